@@ -1,0 +1,1 @@
+//! CAD models, groups, closest points.

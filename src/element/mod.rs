@@ -1,0 +1,11 @@
+//! One table of cells; lattice, basis, Bernstein nets, sub-elements and file orders are derived from it.
+//!
+//! Everything that depends on the kind of a cell lives below this module: the rest of the program asks a
+//! [`Cell`] for its lattice, its faces or its sample tables and loops over the answer.
+
+mod cell;
+mod lattice;
+pub mod order;
+
+pub use cell::{Cell, Face, Order, OrderOutOfRange};
+pub use lattice::{face_lattice, lattice};

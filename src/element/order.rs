@@ -1,0 +1,1 @@
+//! Node orders of file formats, as permutations of the internal order (CGNS).

@@ -1,0 +1,1 @@
+//! Mesh files: one format a file, both ways.

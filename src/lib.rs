@@ -1,0 +1,6 @@
+//! sagitta curves linear viscous meshes onto their CAD.
+#![forbid(unsafe_code)]
+
+pub mod element;
+pub mod formats;
+pub mod mesh;
