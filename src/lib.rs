@@ -2,5 +2,6 @@
 #![forbid(unsafe_code)]
 
 pub mod element;
+pub mod elevate;
 pub mod formats;
 pub mod mesh;

@@ -3,9 +3,15 @@
 //! Everything that depends on the kind of a cell lives below this module: the rest of the program asks a
 //! [`Cell`] for its lattice, its faces or its sample tables and loops over the answer.
 
+pub mod basis;
+pub mod bernstein;
 mod cell;
 mod lattice;
 pub mod order;
+mod orientation;
+mod subdivision;
 
 pub use cell::{Cell, Face, Order, OrderOutOfRange};
 pub use lattice::{face_lattice, lattice};
+pub use orientation::{canonical, interior_count, interior_slots, interior_start};
+pub use subdivision::corner_tets;

@@ -13,11 +13,14 @@ pub struct TooMany {
 macro_rules! id {
     ($(#[$doc:meta])* $name:ident, $what:literal) => {
         $(#[$doc])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, bytemuck::Pod, bytemuck::Zeroable)]
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, bytemuck::Pod, bytemuck::Zeroable)]
         #[repr(transparent)]
         pub struct $name(u32);
 
         impl $name {
+            /// The largest id; used as filler beyond the corners of a key.
+            pub(crate) const MAX: Self = Self(u32::MAX);
+
             /// The id of the item at a place in its list.
             ///
             /// # Errors
