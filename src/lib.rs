@@ -5,3 +5,6 @@ pub mod element;
 pub mod elevate;
 pub mod formats;
 pub mod mesh;
+pub mod perturb;
+pub mod quality;
+pub mod smooth;

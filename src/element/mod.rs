@@ -9,9 +9,11 @@ mod cell;
 mod lattice;
 pub mod order;
 mod orientation;
+pub mod samples;
 mod subdivision;
 
 pub use cell::{Cell, Face, Order, OrderOutOfRange};
 pub use lattice::{face_lattice, lattice};
 pub use orientation::{canonical, interior_count, interior_slots, interior_start};
+pub use samples::Samples;
 pub use subdivision::corner_tets;

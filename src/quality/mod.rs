@@ -1,0 +1,13 @@
+//! The paper's costs, equations (2) to (8), as pure functions of positions and targets.
+//!
+//! They are what is reported, thresholded and blended. What the smoother descends on is built from the same
+//! quantities but lives in [`crate::smooth`].
+
+mod cost;
+mod shape;
+mod size;
+
+pub use cost::{alpha, blend, nodal};
+pub use shape::{Cut, c_wcn, corner_frame, element_c_wcn};
+pub(crate) use shape::{cofactor, squared};
+pub use size::{element_c_jac, jacobians};

@@ -1,0 +1,110 @@
+//! Element shape: the weighted condition number, equations (3) to (5).
+
+use glam::{DMat3, DVec3};
+
+use crate::element::{Cell, Order, corner_tets};
+
+/// Which of the ways to cut an element into linear sub-elements is meant: an index into
+/// [`crate::element::corner_tets`].
+pub type Cut = u8;
+
+/// Shape cost of one corner, equations (3) and (5), for `T = A W^-1`:
+/// `3 / (|T| |T^-1|) = 3 det T / (|T| |adj T|)` where `det T > 0`, else `det T`.
+///
+/// Range (-inf, 1]; 1 exactly where `A` is a rotated and scaled `W`. The paper's `J` of the inverted branch is taken
+/// relative to the target, so that the value does not depend on the model's unit. Continuous at `det T = 0`.
+#[must_use]
+pub fn c_wcn(t: DMat3) -> f64 {
+    let det = t.determinant();
+    if det <= 0.0 {
+        return det;
+    }
+    let norm = (squared(t) * squared(cofactor(t))).sqrt();
+    if norm > 0.0 { 3.0 * det / norm } else { 0.0 }
+}
+
+/// Edge vectors of a corner tetrahedron as columns: equation (4)'s matrix.
+#[must_use]
+pub fn corner_frame(tet: [u8; 4], points: &[DVec3]) -> DMat3 {
+    let [o, u, v, w] = tet.map(|n| points[usize::from(n)]);
+    DMat3::from_cols(u - o, v - o, w - o)
+}
+
+/// `adj(T)` transposed: its columns are the cross products of `T`'s columns.
+#[must_use]
+pub(crate) fn cofactor(t: DMat3) -> DMat3 {
+    let (a, b, c) = (t.x_axis, t.y_axis, t.z_axis);
+    DMat3::from_cols(b.cross(c), c.cross(a), a.cross(b))
+}
+
+/// Squared Frobenius norm.
+#[must_use]
+pub(crate) fn squared(t: DMat3) -> f64 {
+    t.x_axis.length_squared() + t.y_axis.length_squared() + t.z_axis.length_squared()
+}
+
+/// Smallest `C_WCN` of an element's sub-elements and the sum over them, for the cut whose worst sub-element is best.
+///
+/// `points` are the element's nodes, `targets` the same nodes of the unperturbed mesh.
+#[must_use]
+pub fn element_c_wcn(cell: Cell, order: Order, points: &[DVec3], targets: &[DVec3]) -> (f64, f64, Cut) {
+    let mut best = (f64::NEG_INFINITY, 0.0, 0);
+    for (cut, tets) in corner_tets(cell, order).iter().enumerate() {
+        let (mut worst, mut sum) = (f64::INFINITY, 0.0);
+        for &tet in tets {
+            let cost = c_wcn(corner_frame(tet, points) * corner_frame(tet, targets).inverse());
+            worst = worst.min(cost);
+            sum += cost;
+        }
+        if worst > best.0 {
+            best = (worst, sum / tets.len() as f64, cut as Cut);
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::element::lattice;
+    use proptest::prelude::*;
+
+    fn matrix() -> impl Strategy<Value = DMat3> {
+        prop::array::uniform9(-1.0..1.0f64).prop_map(|m| DMat3::from_cols_array(&m) + DMat3::IDENTITY * 0.7)
+    }
+
+    proptest! {
+        /// The second road: the paper's own form, `3 / (|A W^-1| |W A^-1|)`.
+        #[test]
+        fn agrees_with_the_form_by_inverses(a in matrix(), w in matrix()) {
+            prop_assume!(a.determinant() * w.determinant() > 1e-2 && w.determinant().abs() > 1e-2);
+            let by_inverse = 3.0 / (squared(a * w.inverse()) * squared(w * a.inverse())).sqrt();
+            prop_assert!((c_wcn(a * w.inverse()) - by_inverse).abs() < 1e-9);
+        }
+
+        #[test]
+        fn does_not_see_rotation_or_scale(w in matrix(), angle in 0.0..6.0f64, scale in 0.1..10.0f64) {
+            prop_assume!(w.determinant().abs() > 1e-2);
+            let turned = DMat3::from_rotation_y(angle) * w * scale;
+            prop_assert!((c_wcn(turned * w.inverse()) - 1.0).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn an_unperturbed_element_costs_one() {
+        for cell in Cell::VOLUME {
+            for order in Order::all() {
+                let points: Vec<DVec3> = lattice(cell, order).iter().map(|n| DVec3::from(n.map(f64::from))).collect();
+                let (worst, mean, _) = element_c_wcn(cell, order, &points, &points);
+                assert!((worst - 1.0).abs() < 1e-12 && (mean - 1.0).abs() < 1e-12, "{cell} {order}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_inverted_corner_costs_its_relative_volume() {
+        let mirrored = DMat3::from_diagonal(DVec3::new(2.0, 1.0, -1.0));
+        assert_eq!(c_wcn(mirrored), -2.0);
+        assert_eq!(c_wcn(DMat3::ZERO), 0.0);
+    }
+}

@@ -1,0 +1,50 @@
+//! Smoothing: stages, the active patch, the objective and its descent. Sees the CAD only as a [`Constraint`].
+
+mod block;
+mod density;
+mod descend;
+mod kernel;
+mod objective;
+mod patch;
+mod problem;
+mod stages;
+
+use glam::DVec3;
+
+use crate::mesh::NodeId;
+pub use problem::{ElementCost, Problem};
+pub use stages::{Progress, Settings, Smoothed, smooth};
+
+/// The directions in which a node may move from where it stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Freedom {
+    /// Everywhere.
+    Space,
+    /// In the plane of this unit normal.
+    Plane(DVec3),
+    /// Along this unit tangent.
+    Line(DVec3),
+    /// Nowhere.
+    Fixed,
+}
+
+impl Freedom {
+    /// The part of a vector that lies in the free directions.
+    fn keep(self, v: DVec3) -> DVec3 {
+        match self {
+            Freedom::Space => v,
+            Freedom::Plane(normal) => v - normal * normal.dot(v),
+            Freedom::Line(tangent) => tangent * tangent.dot(v),
+            Freedom::Fixed => DVec3::ZERO,
+        }
+    }
+}
+
+/// What holds the nodes that lie on boundaries: the smoother's only sight of the CAD.
+pub trait Constraint: Sync {
+    /// How `node` may move from `at`.
+    fn freedom(&self, node: NodeId, at: DVec3) -> Freedom;
+
+    /// The allowed place nearest to `wish`, for a node that stands at `from`.
+    fn restrict(&self, node: NodeId, from: DVec3, wish: DVec3) -> DVec3;
+}

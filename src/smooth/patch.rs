@@ -1,0 +1,91 @@
+//! The part of the mesh that is being smoothed: active elements, their nodes, and who owns what.
+
+use glam::DVec3;
+
+use super::Problem;
+use crate::element::Cell;
+use crate::mesh::NodeId;
+
+/// Elements of one cell in a patch; their nodes' slots follow each other.
+pub(super) struct Run {
+    pub(super) cell: Cell,
+    /// Nodes an element.
+    pub(super) stride: usize,
+    /// First element of the run in [`Patch::elements`].
+    pub(super) first: usize,
+    pub(super) count: usize,
+    /// First slot of the run in [`Patch::slots`].
+    pub(super) slot: usize,
+}
+
+/// Active elements with compact node numbers.
+pub(super) struct Patch {
+    /// Ids of the elements in the problem, by run.
+    pub(super) elements: Vec<usize>,
+    pub(super) runs: Vec<Run>,
+    /// Patch node of every element's every node.
+    pub(super) slots: Vec<u32>,
+    /// The mesh's nodes.
+    pub(super) nodes: Vec<NodeId>,
+    /// Whether all elements around the node are in the patch, so that it may move.
+    pub(super) movable: Vec<bool>,
+    /// For each node the range in `incident`.
+    starts: Vec<u32>,
+    /// Slots by node, rising.
+    incident: Vec<u32>,
+    /// Straight places of the nodes.
+    pub(super) targets: Vec<DVec3>,
+}
+
+impl Patch {
+    /// The patch of the elements that `active` names (rising ids).
+    pub(super) fn new(problem: &Problem, active: &[usize]) -> Patch {
+        let mut runs: Vec<Run> = Vec::new();
+        let mut elements: Vec<usize> = active.to_vec();
+        elements.sort_by_key(|&e| (problem.cell(e), e));
+        let mut local = vec![u32::MAX; problem.node_count()];
+        let (mut nodes, mut slots) = (Vec::new(), Vec::new());
+        for (place, &e) in elements.iter().enumerate() {
+            let (cell, own) = (problem.cell(e), problem.nodes(e));
+            match runs.last_mut() {
+                Some(run) if run.cell == cell => run.count += 1,
+                _ => runs.push(Run { cell, stride: own.len(), first: place, count: 1, slot: slots.len() }),
+            }
+            for &node in own {
+                let index = &mut local[node.index()];
+                if *index == u32::MAX {
+                    *index = nodes.len() as u32;
+                    nodes.push(node);
+                }
+                slots.push(*index);
+            }
+        }
+        let (starts, incident) = incidence(&slots, nodes.len());
+        let complete = |i: usize| (starts[i + 1] - starts[i]) as usize == problem.valence(nodes[i]);
+        let movable = (0..nodes.len()).map(complete).collect();
+        let targets = nodes.iter().map(|n| problem.straight[n.index()]).collect();
+        Patch { elements, runs, slots, nodes, movable, starts, incident, targets }
+    }
+
+    /// Slots of a node's appearances in elements, rising.
+    pub(super) fn incident(&self, node: usize) -> &[u32] {
+        &self.incident[self.starts[node] as usize..self.starts[node + 1] as usize]
+    }
+}
+
+fn incidence(slots: &[u32], nodes: usize) -> (Vec<u32>, Vec<u32>) {
+    let mut starts = vec![0u32; nodes + 1];
+    for &node in slots {
+        starts[node as usize + 1] += 1;
+    }
+    for node in 0..nodes {
+        starts[node + 1] += starts[node];
+    }
+    let mut next = starts.clone();
+    let mut incident = vec![0; slots.len()];
+    for (slot, &node) in slots.iter().enumerate() {
+        incident[next[node as usize] as usize] = slot as u32;
+        next[node as usize] += 1;
+    }
+    (starts, incident)
+}

@@ -1,0 +1,134 @@
+//! The mesh as the smoother sees it: volume elements by number, their straight places, what each costs.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::kernel::{Element, Kernel, Scratch};
+use crate::element::{Cell, Order};
+use crate::mesh::{Block, Mesh, NodeId};
+use crate::quality::{Cut, element_c_wcn};
+
+/// The volume elements of an elevated mesh and their unperturbed places.
+pub struct Problem<'a> {
+    pub(super) order: Order,
+    blocks: Vec<&'a Block>,
+    /// First element of each block, and the number of all elements.
+    firsts: Vec<usize>,
+    /// The unperturbed place of every node.
+    pub(super) straight: &'a [DVec3],
+    /// Number of volume elements around each node.
+    valence: Vec<u32>,
+}
+
+/// The two components of an element's cost, equations (3) and (6): its worst sub-element and its worst survey point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ElementCost {
+    /// Worst `C_WCN` of the sub-elements.
+    pub c_wcn: f64,
+    /// Worst `C_JAC` of the survey.
+    pub c_jac: f64,
+    /// How the element is best cut into sub-elements.
+    pub cut: Cut,
+}
+
+impl ElementCost {
+    /// The smaller component.
+    #[must_use]
+    pub fn worst(&self) -> f64 {
+        self.c_wcn.min(self.c_jac)
+    }
+}
+
+impl<'a> Problem<'a> {
+    /// The volume elements of `mesh`; `straight` are the unperturbed places of its nodes.
+    #[must_use]
+    pub fn new(mesh: &'a Mesh, straight: &'a [DVec3]) -> Problem<'a> {
+        let blocks: Vec<&Block> = mesh.blocks_of(3).map(|(_, block)| block).collect();
+        let mut firsts = vec![0];
+        let mut valence = vec![0; mesh.points.len()];
+        for block in &blocks {
+            firsts.push(firsts.last().unwrap_or(&0) + block.tags.len());
+            for node in &block.nodes {
+                valence[node.index()] += 1;
+            }
+        }
+        Problem { order: mesh.order, blocks, firsts, straight, valence }
+    }
+
+    /// Number of volume elements.
+    #[must_use]
+    pub fn element_count(&self) -> usize {
+        self.firsts.last().copied().unwrap_or(0)
+    }
+
+    pub(super) fn node_count(&self) -> usize {
+        self.straight.len()
+    }
+
+    fn place(&self, element: usize) -> (&'a Block, usize) {
+        let block = self.firsts.partition_point(|&first| first <= element) - 1;
+        (self.blocks[block], element - self.firsts[block])
+    }
+
+    /// The cell of an element.
+    #[must_use]
+    pub fn cell(&self, element: usize) -> Cell {
+        self.place(element).0.cell
+    }
+
+    /// The nodes of an element, in internal order.
+    #[must_use]
+    pub fn nodes(&self, element: usize) -> &'a [NodeId] {
+        let (block, index) = self.place(element);
+        let stride = block.stride(self.order);
+        &block.nodes[index * stride..(index + 1) * stride]
+    }
+
+    pub(super) fn valence(&self, node: NodeId) -> usize {
+        self.valence[node.index()] as usize
+    }
+
+    /// The cells that occur.
+    pub(super) fn cells(&self) -> Vec<Cell> {
+        let mut cells: Vec<Cell> = self.blocks.iter().map(|b| b.cell).collect();
+        cells.sort_unstable();
+        cells.dedup();
+        cells
+    }
+
+    /// Costs of the given elements at the places `x` of all nodes.
+    pub(super) fn costs(&self, kernels: &Kernels, x: &[DVec3], elements: &[usize]) -> Vec<ElementCost> {
+        let cost = |(scratch, points, targets): &mut (Scratch, Vec<DVec3>, Vec<DVec3>), &e: &usize| {
+            let nodes = self.nodes(e);
+            let origin = self.straight[nodes[0].index()];
+            points.clear();
+            points.extend(nodes.iter().map(|n| x[n.index()] - origin));
+            targets.clear();
+            targets.extend(nodes.iter().map(|n| self.straight[n.index()] - origin));
+            if points == targets {
+                return ElementCost { c_wcn: 1.0, c_jac: 1.0, cut: 0 };
+            }
+            let (c_wcn, _, cut) = element_c_wcn(self.cell(e), self.order, points, targets);
+            let element = Element { points, targets, cut };
+            let c_jac = kernels.of(self.cell(e)).c_jac(&element, scratch);
+            ElementCost { c_wcn, c_jac, cut }
+        };
+        elements.par_iter().with_min_len(64).map_init(Default::default, cost).collect()
+    }
+}
+
+/// One kernel a cell, all of the same survey density.
+pub(super) struct Kernels(Vec<(Cell, Kernel)>);
+
+impl Kernels {
+    pub(super) fn new(problem: &Problem, divisions: usize) -> Kernels {
+        let kernel = |cell| (cell, Kernel::new(cell, problem.order, divisions));
+        Kernels(problem.cells().into_iter().map(kernel).collect())
+    }
+
+    /// The kernel of a cell that occurs in the problem.
+    pub(super) fn of(&self, cell: Cell) -> &Kernel {
+        let place = self.0.partition_point(|(other, _)| *other < cell);
+        &self.0[place].1
+    }
+}
