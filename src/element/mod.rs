@@ -10,6 +10,7 @@ mod lattice;
 pub mod order;
 mod orientation;
 mod subdivision;
+pub mod type_code;
 
 pub use cell::{Cell, Face, Order, OrderOutOfRange};
 pub use lattice::{face_lattice, lattice};
