@@ -26,8 +26,7 @@ impl FileOrder {
     /// `None` where the format has no such element: VTK has no pyramid beyond the linear one.
     #[must_use]
     pub fn slots(self, cell: Cell, order: Order) -> Option<&'static [u8]> {
-        static TABLES: [[[OnceLock<Option<Vec<u8>>>; 4]; 8]; 3] =
-            [const { [const { [const { OnceLock::new() }; 4] }; 8] }; 3];
+        static TABLES: [[[Table; 4]; 8]; 3] = [const { [const { [const { Table::new() }; 4] }; 8] }; 3];
         TABLES[self as usize][cell as usize][order.get() - 1].get_or_init(|| self.build(cell, order)).as_deref()
     }
 
@@ -43,6 +42,9 @@ impl FileOrder {
         Some(nodes.iter().filter_map(|at| internal.iter().position(|x| x == at)).map(|n| n as u8).collect())
     }
 }
+
+/// One permutation, made when it is first asked for.
+type Table = OnceLock<Option<Vec<u8>>>;
 
 /// One cell's rule: the pieces in which its nodes follow the corners.
 struct Rule {
