@@ -1,7 +1,7 @@
 //! Gmsh MSH, versions 4.1 and 2.2, as text and as bytes.
 //!
-//! A file is a row of sections `$Name` ... `$EndName`. Each section is read once, over a [`source::Source`] of
-//! numbers that hides how they are encoded, and written once, over a [`sink::Sink`]. Sections that say nothing of
+//! A file is a row of sections `$Name` ... `$EndName`. Each section is read once, over a `Source` of
+//! numbers that hides how they are encoded, and written once, over a `Sink`. Sections that say nothing of
 //! the mesh itself (`$NodeData`, `$Comments`, ...) are passed over.
 
 mod draft;
