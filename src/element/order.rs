@@ -7,7 +7,7 @@
 use std::sync::OnceLock;
 
 use super::lattice::{between, embed, shifted};
-use super::{Cell, Face, Order, lattice};
+use super::{Cell, Face, Order, basis, lattice};
 
 /// A file format's way to order the nodes of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -41,6 +41,18 @@ impl FileOrder {
         let nodes = points(layout, cell, order.get() as u8);
         Some(nodes.iter().filter_map(|at| internal.iter().position(|x| x == at)).map(|n| n as u8).collect())
     }
+}
+
+/// A pyramid as VTK's degenerate hex of the same order: for each slot of the hex, the weights of the pyramid's nodes
+/// in the slot's point.
+///
+/// The hex's lattice in the collapsed coordinates of the pyramid, `x = a (1 - c)`, `y = b (1 - c)`, `z = c`: its upper
+/// face is the apex. The pyramid's functions are polynomials there, so that the hex has the pyramid's shape exactly.
+#[must_use]
+pub fn pyramid_as_hex(order: Order) -> Vec<Vec<f64>> {
+    let p = order.get() as f64;
+    let chart = points(&VTK, Cell::Hex, order.get() as u8);
+    chart.iter().map(|at| basis::values(Cell::Pyramid, order, at.map(|x| f64::from(x) / p))).collect()
 }
 
 /// One permutation, made when it is first asked for.

@@ -91,6 +91,9 @@ pub fn cgns_name(cell: Cell, order: Order) -> String {
     format!("{stem}_{}", cell.node_count(order))
 }
 
+/// VTK's number of the Lagrange hex, which stands for the pyramids that VTK lacks.
+pub const VTK_LAGRANGE_HEX: u8 = 72;
+
 /// VTK's number of an element; `None` for pyramids beyond the linear one, which VTK lacks.
 ///
 /// Linear elements are the classic ones, except the prism: which way VTK's own wedge points has changed between
@@ -104,7 +107,7 @@ pub fn vtk(cell: Cell, order: Order) -> Option<u8> {
         Cell::Triangle => Some(if linear { 5 } else { 69 }),
         Cell::Quad => Some(if linear { 9 } else { 70 }),
         Cell::Tet => Some(if linear { 10 } else { 71 }),
-        Cell::Hex => Some(if linear { 12 } else { 72 }),
+        Cell::Hex => Some(if linear { 12 } else { VTK_LAGRANGE_HEX }),
         Cell::Prism => Some(73),
         Cell::Pyramid => linear.then_some(14),
     }

@@ -1,14 +1,17 @@
 //! Mesh files: one file or folder a format, found by content when read and by name when written.
 
 mod error;
+mod field;
 pub mod msh;
 mod output;
+mod vtu;
 
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
 pub use error::{Error, Fault, Flaw, Place};
+pub use field::{Field, Support, Values};
 
 use crate::mesh::Mesh;
 
@@ -16,12 +19,16 @@ use crate::mesh::Mesh;
 const BUFFER: usize = 1 << 20;
 
 /// How files are written, where a format leaves a choice.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct WriteOptions {
+#[derive(Clone, Copy, Debug, Default)]
+pub struct WriteOptions<'a> {
     /// Version of MSH files.
     pub msh_version: msh::Version,
     /// Encoding of MSH files.
     pub msh_encoding: msh::Encoding,
+    /// VTU without the cells below the top dimension.
+    pub volume_only: bool,
+    /// Values to show, in VTU files.
+    pub fields: &'a [Field],
 }
 
 /// The formats that can be told apart by their first bytes.
@@ -75,12 +82,13 @@ pub fn read(path: &Path) -> Result<Mesh, Error> {
 /// # Errors
 /// [`Error::Io`], [`Error::Format`] for a name of no known format, [`Error::Inexpressible`] where the format lacks
 /// what the mesh holds.
-pub fn write(path: &Path, mesh: &Mesh, options: &WriteOptions) -> Result<(), Error> {
+pub fn write(path: &Path, mesh: &Mesh, options: &WriteOptions<'_>) -> Result<(), Error> {
     let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
     match extension.to_str() {
         Some("msh") => {
             output::write_whole(path, |out| msh::write(out, mesh, options.msh_version, options.msh_encoding))
         }
+        Some("vtu") => output::write_whole(path, |out| vtu::write(out, mesh, options.fields, options.volume_only)),
         _ => {
             let reason = "the name ends in no known format; name it .msh or .vtu".into();
             Err(Error::Format { file: path.to_path_buf(), reason })
