@@ -16,6 +16,9 @@ mod source;
 mod write22;
 mod write41;
 
+#[cfg(test)]
+mod tests;
+
 use std::io::{BufRead, Write};
 
 use draft::Draft;

@@ -18,11 +18,14 @@ pub(super) struct Outline<'a> {
     /// The nodes from [`Outline::tail_start`] on, ordered by entity.
     tail: Vec<NodeId>,
     tail_start: usize,
+    /// Parameters of nodes, by rising node.
+    parameters: Vec<(NodeId, [f64; 2])>,
 }
 
-/// A run of nodes on one entity.
+/// A run of nodes on one entity, which all have parameters or of which none counts.
 pub(super) struct Run {
     pub(super) entity: EntityKey,
+    pub(super) parametric: bool,
     /// Places in the order of writing; see [`Outline::node`].
     pub(super) places: Range<usize>,
 }
@@ -33,12 +36,16 @@ impl<'a> Outline<'a> {
         let (blocks, groups) = block_entities(mesh);
         let nodes = node_entities(mesh, &blocks);
         let (tail_start, tail) = tail(mesh, &nodes);
-        let mut outline = Outline { entities: Vec::new(), blocks, runs: Vec::new(), tail, tail_start };
+        let mut parameters = mesh.node_parameters.clone();
+        parameters.sort_by_key(|&(node, _)| node);
+        let mut outline = Outline { entities: Vec::new(), blocks, runs: Vec::new(), tail, tail_start, parameters };
         for place in 0..mesh.points.len() {
-            let entity = nodes[outline.node(place)];
+            let node = outline.node(place);
+            let entity = nodes[node];
+            let parametric = matches!(entity.dimension, 1 | 2) && outline.parameters(node).is_some();
             match outline.runs.last_mut() {
-                Some(run) if run.entity == entity => run.places.end = place + 1,
-                _ => outline.runs.push(Run { entity, places: place..place + 1 }),
+                Some(run) if run.entity == entity && run.parametric == parametric => run.places.end = place + 1,
+                _ => outline.runs.push(Run { entity, parametric, places: place..place + 1 }),
             }
         }
         outline.entities = outline.all_entities(mesh, &groups);
@@ -51,6 +58,12 @@ impl<'a> Outline<'a> {
             Some(n) => self.tail[n].index(),
             None => place,
         }
+    }
+
+    /// The parameters of a node on its curve or surface.
+    pub(super) fn parameters(&self, node: usize) -> Option<[f64; 2]> {
+        let place = self.parameters.binary_search_by_key(&node, |&(n, _)| n.index()).ok()?;
+        Some(self.parameters[place].1)
     }
 
     fn all_entities(&self, mesh: &'a Mesh, groups: &BTreeMap<EntityKey, Vec<i32>>) -> Vec<Cow<'a, Entity>> {

@@ -2,12 +2,12 @@
 
 use std::io;
 
-use super::outline::{Outline, Run};
+use super::outline::Outline;
 use super::sink::Sink;
 use crate::element::order::FileOrder;
 use crate::element::type_code;
 use crate::formats::output::Unwritten;
-use crate::mesh::{Mesh, NodeId};
+use crate::mesh::Mesh;
 
 /// Writes all sections after `$PhysicalNames`.
 pub(super) fn write(sink: &mut impl Sink, mesh: &Mesh) -> Result<(), Unwritten> {
@@ -51,40 +51,28 @@ fn head(sink: &mut impl Sink, blocks: usize, tags: impl Iterator<Item = u64> + C
 }
 
 fn nodes(sink: &mut impl Sink, mesh: &Mesh, outline: &Outline) -> io::Result<()> {
-    let mut parameters = mesh.node_parameters.clone();
-    parameters.sort_by_key(|&(node, _)| node);
     sink.open("Nodes")?;
     head(sink, outline.runs.len(), mesh.node_tags.iter().copied())?;
     for run in &outline.runs {
         let nodes = || run.places.clone().map(|place| outline.node(place));
-        let known = run_parameters(run, outline, &parameters);
         sink.int(i32::from(run.entity.dimension))?;
         sink.int(run.entity.tag)?;
-        sink.int(i32::from(known.is_some()))?;
+        sink.int(i32::from(run.parametric))?;
         sink.size(run.places.len() as u64)?;
         sink.end_line()?;
         for node in nodes() {
             sink.size(mesh.node_tags[node])?;
             sink.end_line()?;
         }
-        for (n, node) in nodes().enumerate() {
+        for node in nodes() {
             sink.reals(&mesh.points[node].to_array())?;
-            if let Some(known) = &known {
-                sink.reals(&known[n][..usize::from(run.entity.dimension)])?;
+            if let Some(uv) = outline.parameters(node).filter(|_| run.parametric) {
+                sink.reals(&uv[..usize::from(run.entity.dimension)])?;
             }
             sink.end_line()?;
         }
     }
     sink.close("Nodes")
-}
-
-/// The parameters of a run's nodes, where the run lies on a curve or surface and all have them.
-fn run_parameters(run: &Run, outline: &Outline, parameters: &[(NodeId, [f64; 2])]) -> Option<Vec<[f64; 2]>> {
-    if parameters.is_empty() || !matches!(run.entity.dimension, 1 | 2) {
-        return None;
-    }
-    let of = |node: usize| parameters.binary_search_by_key(&node, |&(n, _)| n.index()).ok().map(|n| parameters[n].1);
-    run.places.clone().map(|place| of(outline.node(place))).collect()
 }
 
 fn elements(sink: &mut impl Sink, mesh: &Mesh, outline: &Outline) -> Result<(), Unwritten> {
