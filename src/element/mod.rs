@@ -11,6 +11,7 @@ pub mod order;
 mod orientation;
 pub mod samples;
 mod subdivision;
+pub mod type_code;
 
 pub use cell::{Cell, Face, Order, OrderOutOfRange};
 pub use lattice::{face_lattice, lattice};

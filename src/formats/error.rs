@@ -1,0 +1,148 @@
+//! What can be wrong with a mesh file: one error that names file, place, thing and remedy.
+
+use std::fmt;
+use std::io;
+use std::path::PathBuf;
+
+use crate::element::Order;
+use crate::mesh::{EntityKey, TooMany};
+
+/// A mesh file could not be read or written.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The operating system refused.
+    #[error("{}: cannot {action}: {source}", file.display())]
+    Io {
+        /// The file in question.
+        file: PathBuf,
+        /// What was tried, as a verb.
+        action: &'static str,
+        /// The system's answer.
+        source: io::Error,
+    },
+    /// The file is not what it should be.
+    #[error("{}, {place}: {fault}", file.display())]
+    Content {
+        /// The file in question.
+        file: PathBuf,
+        /// Where in the file.
+        place: Place,
+        /// What is wrong there.
+        fault: Box<Fault>,
+    },
+    /// The file is in no format that can be read, or its name asks for none that can be written.
+    #[error("{}: {reason}", file.display())]
+    Format {
+        /// The file in question.
+        file: PathBuf,
+        /// What it seems to be, and what to do.
+        reason: String,
+    },
+    /// The mesh holds something that the format cannot express.
+    #[error("{}: cannot be written: {reason}", file.display())]
+    Inexpressible {
+        /// The file in question.
+        file: PathBuf,
+        /// What cannot be expressed, and what to do.
+        reason: String,
+    },
+}
+
+/// A place in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// A line of text, counted from 1.
+    Line(u64),
+    /// An offset in binary data, counted from 0.
+    Byte(u64),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Place::Line(line) => write!(f, "line {line}"),
+            Place::Byte(offset) => write!(f, "byte {offset}"),
+        }
+    }
+}
+
+/// A fault and its place, on the way to the caller who knows the file's name.
+#[derive(Debug)]
+pub struct Flaw {
+    /// Where.
+    pub place: Place,
+    /// What.
+    pub fault: Box<Fault>,
+}
+
+impl Flaw {
+    /// A fault at a place.
+    #[must_use]
+    pub fn new(place: Place, fault: Fault) -> Flaw {
+        Flaw { place, fault: Box::new(fault) }
+    }
+
+    /// The error, now that the file's name is known.
+    #[must_use]
+    pub fn of(self, file: impl Into<PathBuf>) -> Error {
+        Error::Content { file: file.into(), place: self.place, fault: self.fault }
+    }
+}
+
+/// What is wrong with a mesh file's content.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // the message of each says what it is
+pub enum Fault {
+    #[error("reading failed: {0}")]
+    Io(#[from] io::Error),
+    #[error("the file ends inside {0}: it was cut off; copy or write it again")]
+    Truncated(&'static str),
+    #[error("expected {what}, found {found:?}")]
+    Unexpected { what: &'static str, found: String },
+    #[error("{count} {what} do not fit into the {rest} bytes that follow: the file is cut off or damaged")]
+    Count { what: &'static str, count: u64, rest: u64 },
+    #[error("{what} are announced as {announced}, but there are {found}: the file is damaged")]
+    Miscounted { what: &'static str, announced: u64, found: u64 },
+    #[error("{0} is not UTF-8 text: the file is damaged, or in another encoding")]
+    NotUtf8(&'static str),
+    #[error("MSH version {0} is not read; save as version 4.1 or 2.2 (Gmsh: Mesh.MshFileVersion = 4.1)")]
+    Version(String),
+    #[error("data size {0}, but Gmsh's files have 8; the header is damaged")]
+    DataSize(i32),
+    #[error("the byte-order mark is {0:#010x}, not 1 in either byte order: the header is damaged")]
+    ByteOrder(u32),
+    #[error("section ${0} is missing")]
+    MissingSection(&'static str),
+    #[error("section ${0} stands twice")]
+    RepeatedSection(&'static str),
+    #[error("section ${later} must follow ${earlier}")]
+    SectionOrder { earlier: &'static str, later: &'static str },
+    #[error("section ${section} should end here, found {found:?}")]
+    SectionEnd { section: String, found: String },
+    #[error("node {0}: a coordinate or parameter is not a finite number; mend it in the mesh generator")]
+    NotFinite(u64),
+    #[error("node number 0; numbers must be positive")]
+    ZeroNode,
+    #[error("node {0} stands twice; renumber the nodes (Gmsh: Mesh.Renumber)")]
+    RepeatedNode(u64),
+    #[error("{what} {by} refers to node {node}, which the file does not hold")]
+    UnknownNode { what: &'static str, by: u64, node: u64 },
+    #[error(
+        "element type {0} is unknown; points, lines, triangles, quadrilaterals, tets, pyramids, prisms and hexes are read"
+    )]
+    UnknownElementType(i32),
+    #[error(
+        "element type {0} leaves out interior nodes (serendipity); write complete elements (Gmsh: Mesh.SecondOrderIncomplete = 0)"
+    )]
+    IncompleteElementType(i32),
+    #[error("element type {0} is of order 5 or more; orders 1 to 4 are read")]
+    OrderTooHigh(i32),
+    #[error("elements of {here} in a mesh of {order}; set one order for the whole mesh (Gmsh: Mesh > Set order)")]
+    MixedOrders { order: Order, here: Order },
+    #[error("elements of dimension {found} on {entity}: the file is damaged")]
+    ElementDimension { entity: EntityKey, found: usize },
+    #[error("entity dimension {0} is outside 0 to 3")]
+    EntityDimension(i32),
+    #[error("{0}; this program's limit")]
+    TooMany(#[from] TooMany),
+}

@@ -1,0 +1,228 @@
+//! Gmsh MSH, versions 4.1 and 2.2, as text and as bytes.
+//!
+//! A file is a row of sections `$Name` ... `$EndName`. Each section is read once, over a `Source` of
+//! numbers that hides how they are encoded, and written once, over a `Sink`. Sections that say nothing of
+//! the mesh itself (`$NodeData`, `$Comments`, ...) are passed over.
+
+mod draft;
+mod names;
+mod node_tags;
+mod outline;
+mod read22;
+mod read41;
+mod scanner;
+mod sink;
+mod source;
+mod write22;
+mod write41;
+
+#[cfg(test)]
+mod tests;
+
+use std::io::{BufRead, Write};
+
+use draft::Draft;
+use scanner::Scanner;
+use sink::{ByteSink, Sink, TextSink};
+use source::{Bytes, Text};
+
+use super::error::{Fault, Flaw};
+use super::output::Unwritten;
+use crate::mesh::Mesh;
+
+/// Versions of the format.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Version {
+    /// 4.1: nodes and elements in blocks by entity.
+    #[default]
+    V4_1,
+    /// 2.2: what older readers take; keeps no boundaries of entities and no node parameters.
+    V2_2,
+}
+
+/// How numbers are written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Encoding {
+    /// As bytes, little-endian.
+    #[default]
+    Binary,
+    /// As text: larger and slower, for readers that take nothing else.
+    Ascii,
+}
+
+/// Reads a mesh from an MSH file's content of `length` bytes.
+///
+/// # Errors
+/// The first [`Fault`] and its place. Memory stays within a small multiple of `length`, whatever the file says.
+pub fn read(input: impl BufRead, length: u64) -> Result<Mesh, Flaw> {
+    let mut scanner = Scanner::new(input, length);
+    let header = Header::read(&mut scanner)?;
+    scanner.binary = header.binary;
+    let mut draft = Draft::default();
+    let mut seen: Vec<&'static str> = Vec::new();
+    while let Some(line) = scanner.line("a section's name")? {
+        let Some(name) = line.strip_prefix('$') else {
+            let found = line.chars().take(40).collect();
+            return Err(scanner.flaw(Fault::Unexpected { what: "a section's name, as $Nodes", found }));
+        };
+        let Some(&section) = SECTIONS.iter().find(|&&section| section == name) else {
+            scanner.skip_section(name)?;
+            continue;
+        };
+        if seen.contains(&section) {
+            return Err(scanner.flaw(Fault::RepeatedSection(section)));
+        }
+        seen.push(section);
+        if matches!(section, "Elements" | "Periodic") && !draft.has_nodes() {
+            return Err(scanner.flaw(Fault::SectionOrder { earlier: "Nodes", later: section }));
+        }
+        read_section(&mut scanner, header, section, &mut draft)?;
+        end_section(&mut scanner, section)?;
+    }
+    if !draft.has_nodes() {
+        return Err(scanner.flaw(Fault::MissingSection("Nodes")));
+    }
+    if !seen.contains(&"Elements") {
+        return Err(scanner.flaw(Fault::MissingSection("Elements")));
+    }
+    Ok(draft.finish())
+}
+
+/// Sections that say something of the mesh.
+const SECTIONS: [&str; 7] =
+    ["PhysicalNames", "Entities", "PartitionedEntities", "Nodes", "ParametricNodes", "Elements", "Periodic"];
+
+/// What `$MeshFormat` says.
+#[derive(Clone, Copy)]
+struct Header {
+    version: Version,
+    binary: bool,
+    swap: bool,
+}
+
+impl Header {
+    fn read(scanner: &mut Scanner<impl BufRead>) -> Result<Header, Flaw> {
+        let mut line = scanner.full_line("the header")?;
+        while line != "$MeshFormat" {
+            let Some(other) = line.strip_prefix('$').filter(|&name| name != "NOD") else {
+                let what = "$MeshFormat (MSH version 1 is not read; save as 4.1)";
+                return Err(scanner.flaw(Fault::Unexpected { what, found: line.chars().take(40).collect() }));
+            };
+            scanner.skip_section(other)?;
+            line = scanner.full_line("the header")?;
+        }
+        let line = scanner.full_line("the header")?;
+        let words: Vec<&str> = line.split_ascii_whitespace().collect();
+        let (Some(&version), Some(binary), Some(Ok(size))) =
+            (words.first(), words.get(1).filter(|w| matches!(**w, "0" | "1")), words.get(2).map(|w| w.parse()))
+        else {
+            let found = line.chars().take(40).collect();
+            return Err(scanner.flaw(Fault::Unexpected { what: "version, 0 or 1, and data size", found }));
+        };
+        let version = match version {
+            "4.1" => Version::V4_1,
+            "2" | "2.0" | "2.1" | "2.2" => Version::V2_2,
+            other => return Err(scanner.flaw(Fault::Version(other.chars().take(40).collect()))),
+        };
+        if size != 8 {
+            return Err(scanner.flaw(Fault::DataSize(size)));
+        }
+        let mut header = Header { version, binary: *binary == "1", swap: false };
+        if header.binary {
+            scanner.end_line("the byte-order mark")?;
+            header.swap = match u32::from_le_bytes(scanner.bytes("the byte-order mark")?) {
+                1 => false,
+                0x0100_0000 => true,
+                other => return Err(scanner.flaw(Fault::ByteOrder(other))),
+            };
+        }
+        end_section(scanner, "MeshFormat")?;
+        Ok(header)
+    }
+}
+
+/// Reads one section's content.
+fn read_section(
+    scanner: &mut Scanner<impl BufRead>,
+    header: Header,
+    section: &'static str,
+    draft: &mut Draft,
+) -> Result<(), Flaw> {
+    match (header.version, section) {
+        (_, "PhysicalNames") => {
+            draft.mesh.physical_names = names::read(scanner)?;
+            Ok(())
+        }
+        (Version::V4_1, _) if header.binary => {
+            scanner.end_line("a section")?;
+            read_section41(&mut Bytes { scanner, swap: header.swap }, section, draft)
+        }
+        (Version::V4_1, _) => read_section41(&mut Text(scanner), section, draft),
+        (Version::V2_2, "Periodic") => read22::periodic(scanner, draft),
+        (Version::V2_2, "Nodes" | "ParametricNodes") => {
+            let count = read22::count(scanner, "the number of nodes", header.binary)?;
+            let parametric = section == "ParametricNodes";
+            if header.binary {
+                read22::nodes(&mut Bytes { scanner, swap: header.swap }, draft, count, parametric)
+            } else {
+                read22::nodes(&mut Text(scanner), draft, count, parametric)
+            }
+        }
+        (Version::V2_2, "Elements") => {
+            let count = read22::count(scanner, "the number of elements", header.binary)?;
+            if header.binary {
+                read22::elements_binary(&mut Bytes { scanner, swap: header.swap }, draft, count)
+            } else {
+                read22::elements_text(&mut Text(scanner), draft, count)
+            }
+        }
+        (Version::V2_2, other) => {
+            Err(scanner.flaw(Fault::Unexpected { what: "a section of MSH 2.2", found: other.into() }))
+        }
+    }
+}
+
+fn read_section41(source: &mut impl source::Source, section: &'static str, draft: &mut Draft) -> Result<(), Flaw> {
+    match section {
+        "Entities" => read41::entities(source, draft),
+        "PartitionedEntities" => read41::partitioned_entities(source, draft),
+        "Nodes" => read41::nodes(source, draft),
+        "Elements" => read41::elements(source, draft),
+        "Periodic" => read41::periodic(source, draft),
+        other => Err(source.flaw(Fault::Unexpected { what: "a section of MSH 4.1", found: other.into() })),
+    }
+}
+
+fn end_section(scanner: &mut Scanner<impl BufRead>, section: &'static str) -> Result<(), Flaw> {
+    let line = scanner.full_line("a section's end")?;
+    if line.strip_prefix("$End") == Some(section) {
+        return Ok(());
+    }
+    let found = line.chars().take(40).collect();
+    Err(scanner.flaw(Fault::SectionEnd { section: section.into(), found }))
+}
+
+/// Writes a mesh. Equal meshes make equal bytes.
+pub(super) fn write(out: &mut impl Write, mesh: &Mesh, version: Version, encoding: Encoding) -> Result<(), Unwritten> {
+    let number = if version == Version::V4_1 { "4.1" } else { "2.2" };
+    let binary = encoding == Encoding::Binary;
+    write!(out, "$MeshFormat\n{number} {} 8\n", u8::from(binary))?;
+    if binary {
+        out.write_all(&1_i32.to_le_bytes())?;
+        out.write_all(b"\n")?;
+    }
+    out.write_all(b"$EndMeshFormat\n")?;
+    names::write(out, &mesh.physical_names)?;
+    if binary {
+        write_sections(&mut ByteSink(out), mesh, version)
+    } else {
+        write_sections(&mut TextSink::new(out), mesh, version)
+    }
+}
+
+fn write_sections(sink: &mut impl Sink, mesh: &Mesh, version: Version) -> Result<(), Unwritten> {
+    match version {
+        Version::V4_1 => write41::write(sink, mesh),
+        Version::V2_2 => write22::write(sink, mesh),
+    }
+}

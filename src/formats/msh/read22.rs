@@ -1,0 +1,217 @@
+//! Sections of MSH 2.2.
+
+use std::collections::HashMap;
+use std::io::BufRead;
+
+use super::draft::{Draft, ElementType, empty_block};
+use super::read41::{dimension, periodic_pair};
+use super::scanner::Scanner;
+use super::source::{Record, Source, Text};
+use crate::element::Cell;
+use crate::formats::error::{Fault, Flaw};
+use crate::mesh::{Block, EntityKey, NodeId, Periodic};
+
+/// A positive `int` as node or element number.
+fn number(source: &mut impl Source, what: &'static str) -> Result<u64, Flaw> {
+    let value = source.int(what)?;
+    u64::try_from(value).map_err(|_| source.flaw(Fault::Unexpected { what, found: value.to_string() }))
+}
+
+/// The count that heads a section: a line of text in both encodings.
+pub(super) fn count<R: BufRead>(scanner: &mut Scanner<R>, what: &'static str, binary: bool) -> Result<u64, Flaw> {
+    let count = scanner.number(what)?;
+    if binary {
+        scanner.end_line(what)?;
+    }
+    Ok(count)
+}
+
+/// `$Nodes` or, with the entity and parameters of each node, `$ParametricNodes`, after the count.
+pub(super) fn nodes(source: &mut impl Source, draft: &mut Draft, count: u64, parametric: bool) -> Result<(), Flaw> {
+    let count = source.checked(count, "nodes", Record { ints: 1, sizes: 0, reals: 3 })?;
+    for _ in 0..count {
+        let tag = number(source, "a node number")?;
+        let point = source.reals::<3>("a node's coordinates")?;
+        if !parametric {
+            draft.push_node(source, tag, point, None)?;
+            continue;
+        }
+        let entity = EntityKey::new(dimension(source)?, source.int("an entity tag")?);
+        let id = draft.push_node(source, tag, point, Some(entity))?;
+        let mut uv = [0.0; 2];
+        let given = if entity.dimension < 3 { usize::from(entity.dimension) } else { 0 };
+        for value in &mut uv[..given] {
+            *value = source.real("a node's parameters")?;
+        }
+        if given > 0 {
+            draft.push_parameters(source, id, uv)?;
+        }
+    }
+    draft.end_nodes(source)
+}
+
+/// Elements of `$Elements` as they come; an element in several physical groups comes once for each.
+struct Elements<'a> {
+    draft: &'a mut Draft,
+    numbers: Vec<u64>,
+    nodes: Vec<NodeId>,
+}
+
+/// An element's number, kind and tags.
+struct Head {
+    tag: u64,
+    kind: ElementType,
+    physical: i32,
+    entity: i32,
+}
+
+/// `$Elements` as text, after the count.
+pub(super) fn elements_text(source: &mut impl Source, draft: &mut Draft, count: u64) -> Result<(), Flaw> {
+    let count = source.checked(count, "elements", Record { ints: 4, ..Record::default() })?;
+    let mut elements = Elements { draft, numbers: Vec::new(), nodes: Vec::new() };
+    for _ in 0..count {
+        let tag = number(source, "an element number")?;
+        let code = source.int("an element type")?;
+        let tag_count = source.int("the number of tags")?;
+        let kind = elements.draft.element_type(source, code)?;
+        let [physical, entity] = tags(source, tag_count)?;
+        elements.push(source, &Head { tag, kind, physical, entity })?;
+    }
+    elements.finish();
+    Ok(())
+}
+
+/// `$Elements` as bytes, after the count: runs of elements of one type and number of tags.
+pub(super) fn elements_binary(source: &mut impl Source, draft: &mut Draft, count: u64) -> Result<(), Flaw> {
+    let mut left = source.checked(count, "elements", Record { ints: 2, ..Record::default() })? as u64;
+    let mut elements = Elements { draft, numbers: Vec::new(), nodes: Vec::new() };
+    while left > 0 {
+        let code = source.int("an element type")?;
+        let run = number(source, "the number of elements of a run")?;
+        let tag_count = source.int("the number of tags")?;
+        let kind = elements.draft.element_type(source, code)?;
+        if run == 0 || run > left {
+            return Err(source.flaw(Fault::Miscounted { what: "elements", announced: left, found: run }));
+        }
+        left -= run;
+        for _ in 0..run {
+            let tag = number(source, "an element number")?;
+            let [physical, entity] = tags(source, tag_count)?;
+            elements.push(source, &Head { tag, kind, physical, entity })?;
+        }
+    }
+    elements.finish();
+    Ok(())
+}
+
+/// Physical and entity tag; partitions behind them are passed over.
+fn tags(source: &mut impl Source, count: i32) -> Result<[i32; 2], Flaw> {
+    let count = u64::try_from(count).unwrap_or(u64::MAX);
+    let mut kept = [0; 2];
+    for n in 0..source.checked(count, "element tags", Record::INT)? {
+        let tag = source.int("an element's tags")?;
+        if let Some(place) = kept.get_mut(n) {
+            *place = tag;
+        }
+    }
+    Ok(kept)
+}
+
+impl Elements<'_> {
+    fn push(&mut self, source: &mut impl Source, head: &Head) -> Result<(), Flaw> {
+        self.numbers.clear();
+        for _ in 0..head.kind.node_count() {
+            self.numbers.push(number(source, "an element's nodes")?);
+        }
+        self.nodes.clear();
+        self.draft.push_element(source, head.kind, head.tag, &self.numbers, &mut self.nodes)?;
+        let cell = head.kind.cell;
+        let entity = EntityKey::new(cell.dimension() as u8, head.entity);
+        let mut physical = if head.physical == 0 { Vec::new() } else { vec![head.physical] };
+        let mut tag = head.tag;
+        if let Some((earlier, mut groups)) = self.take_repeated(cell, entity, head.physical) {
+            tag = earlier;
+            groups.append(&mut physical);
+            physical = groups;
+        }
+        let blocks = &mut self.draft.mesh.blocks;
+        if !blocks.last().is_some_and(|b| b.cell == cell && b.entity == entity && b.physical_tags == physical) {
+            let mut block = empty_block(cell, entity);
+            block.physical_tags = physical;
+            blocks.push(block);
+        }
+        if let Some(block) = blocks.last_mut() {
+            block.tags.push(tag);
+            block.nodes.extend_from_slice(&self.nodes);
+        }
+        Ok(())
+    }
+
+    /// Takes back the last element where the present one is the same in another physical group.
+    fn take_repeated(&mut self, cell: Cell, entity: EntityKey, physical: i32) -> Option<(u64, Vec<i32>)> {
+        let blocks = &mut self.draft.mesh.blocks;
+        let last = blocks.last_mut()?;
+        let same = last.cell == cell && last.entity == entity && last.nodes.ends_with(&self.nodes);
+        if !same || physical == 0 || last.physical_tags.is_empty() || last.physical_tags.contains(&physical) {
+            return None;
+        }
+        let groups = last.physical_tags.clone();
+        let tag = last.tags.pop()?;
+        last.nodes.truncate(last.nodes.len() - self.nodes.len());
+        if last.tags.is_empty() {
+            blocks.pop();
+        }
+        Some((tag, groups))
+    }
+
+    /// Unites blocks that hold the same elements in different physical groups.
+    fn finish(self) {
+        let mut firsts: HashMap<(Cell, EntityKey), Vec<usize>> = HashMap::new();
+        let mut united: Vec<Block> = Vec::new();
+        for block in self.draft.mesh.blocks.drain(..) {
+            let rivals = firsts.entry((block.cell, block.entity)).or_default();
+            let same = rivals.iter().copied().find(|&n| united[n].nodes == block.nodes);
+            match same {
+                Some(n) if !block.physical_tags.iter().any(|tag| united[n].physical_tags.contains(tag)) => {
+                    united[n].physical_tags.extend(block.physical_tags);
+                }
+                _ => {
+                    rivals.push(united.len());
+                    united.push(block);
+                }
+            }
+        }
+        self.draft.mesh.blocks = united;
+    }
+}
+
+/// `$Periodic`, which is text in both encodings.
+pub(super) fn periodic<R: BufRead>(scanner: &mut Scanner<R>, draft: &mut Draft) -> Result<(), Flaw> {
+    let links: u64 = scanner.number("the number of periodic links")?;
+    for _ in 0..links {
+        let slave = EntityKey::new(dimension(&mut Text(scanner))?, scanner.number("a periodic entity")?);
+        let master = scanner.number("a periodic entity")?;
+        let line = scanner.full_line("a periodic link")?;
+        let (affine, line) = match line.strip_prefix("Affine") {
+            Some(values) => {
+                let affine: Result<Vec<f64>, _> = values.split_ascii_whitespace().map(str::parse).collect();
+                let unexpected =
+                    |_| Fault::Unexpected { what: "a periodic map", found: values.chars().take(40).collect() };
+                (affine.map_err(|e| scanner.flaw(unexpected(e)))?, scanner.full_line("a periodic link")?)
+            }
+            None => (Vec::new(), line),
+        };
+        let unexpected =
+            || Fault::Unexpected { what: "the number of periodic nodes", found: line.chars().take(40).collect() };
+        let count = line.parse().map_err(|_| scanner.flaw(unexpected()))?;
+        let mut source = Text(scanner);
+        let count = source.checked(count, "periodic nodes", Record { sizes: 2, ..Record::default() })?;
+        let mut pairs = Vec::with_capacity(count);
+        for _ in 0..count {
+            let pair = [source.size("periodic nodes")?, source.size("periodic nodes")?];
+            pairs.push(periodic_pair(&source, draft, slave, pair)?);
+        }
+        draft.mesh.periodic.push(Periodic { slave, master, affine, pairs });
+    }
+    Ok(())
+}

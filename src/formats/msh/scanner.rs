@@ -1,0 +1,158 @@
+//! The bytes of an MSH file, taken by line, word or number, with the place kept for errors.
+
+use std::io::BufRead;
+
+use crate::formats::error::{Fault, Flaw, Place};
+
+/// Longest line that is read as text: names may be long, but not without end.
+const LONGEST_LINE: usize = 1 << 16;
+/// Longest word that is read as a number.
+const LONGEST_WORD: usize = 1 << 10;
+
+/// A file being read.
+pub(super) struct Scanner<R> {
+    input: R,
+    length: u64,
+    offset: u64,
+    line: u64,
+    word: Vec<u8>,
+    /// Whether places are told as byte offsets.
+    pub(super) binary: bool,
+}
+
+impl<R: BufRead> Scanner<R> {
+    /// A scanner of input of a known length.
+    pub(super) fn new(input: R, length: u64) -> Scanner<R> {
+        Scanner { input, length, offset: 0, line: 1, word: Vec::new(), binary: false }
+    }
+
+    /// Where the scanner stands.
+    pub(super) fn place(&self) -> Place {
+        if self.binary { Place::Byte(self.offset) } else { Place::Line(self.line) }
+    }
+
+    /// Bytes not yet read.
+    pub(super) fn rest(&self) -> u64 {
+        self.length.saturating_sub(self.offset)
+    }
+
+    /// A fault here.
+    pub(super) fn flaw(&self, fault: Fault) -> Flaw {
+        Flaw::new(self.place(), fault)
+    }
+
+    fn peek(&mut self) -> Result<Option<u8>, Flaw> {
+        let (offset, line, binary) = (self.offset, self.line, self.binary);
+        let place = if binary { Place::Byte(offset) } else { Place::Line(line) };
+        let buffer = self.input.fill_buf().map_err(|e| Flaw::new(place, e.into()))?;
+        Ok(buffer.first().copied())
+    }
+
+    fn step(&mut self, byte: u8) {
+        self.input.consume(1);
+        self.offset += 1;
+        self.line += u64::from(byte == b'\n');
+    }
+
+    /// The next line that is not empty, trimmed; `None` at the end of the file.
+    pub(super) fn line(&mut self, what: &'static str) -> Result<Option<String>, Flaw> {
+        self.word.clear();
+        while let Some(byte) = self.peek()? {
+            if byte == b'\n' && !self.word.is_empty() {
+                break; // the line end stays for the next call, so that the place is this line's
+            }
+            self.step(byte);
+            if !(self.word.is_empty() && byte.is_ascii_whitespace()) {
+                self.word.push(byte);
+            }
+            if self.word.len() > LONGEST_LINE {
+                let found = String::from_utf8_lossy(&self.word[..40]).into_owned();
+                return Err(self.flaw(Fault::Unexpected { what, found }));
+            }
+        }
+        if self.word.is_empty() {
+            return Ok(None);
+        }
+        match std::str::from_utf8(&self.word) {
+            Ok(text) => Ok(Some(text.trim_end().to_owned())),
+            Err(_) => Err(self.flaw(Fault::NotUtf8(what))),
+        }
+    }
+
+    /// The next line that is not empty, where the file may not end.
+    pub(super) fn full_line(&mut self, what: &'static str) -> Result<String, Flaw> {
+        match self.line(what)? {
+            Some(line) => Ok(line),
+            None => Err(self.flaw(Fault::Truncated(what))),
+        }
+    }
+
+    /// Goes past the end of the present line: binary data begin there.
+    pub(super) fn end_line(&mut self, what: &'static str) -> Result<(), Flaw> {
+        match self.peek()? {
+            Some(b'\n') => {
+                self.step(b'\n');
+                Ok(())
+            }
+            Some(other) => {
+                let found = char::from(other).to_string();
+                Err(self.flaw(Fault::Unexpected { what, found }))
+            }
+            None => Err(self.flaw(Fault::Truncated(what))),
+        }
+    }
+
+    /// The next word, parsed.
+    pub(super) fn number<T: std::str::FromStr>(&mut self, what: &'static str) -> Result<T, Flaw> {
+        self.word.clear();
+        while let Some(byte) = self.peek()? {
+            let space = byte.is_ascii_whitespace();
+            if (space && !self.word.is_empty()) || self.word.len() > LONGEST_WORD {
+                break;
+            }
+            self.step(byte);
+            if !space {
+                self.word.push(byte);
+            }
+        }
+        if self.word.is_empty() {
+            return Err(self.flaw(Fault::Truncated(what)));
+        }
+        match std::str::from_utf8(&self.word).ok().and_then(|text| text.parse().ok()) {
+            Some(value) => Ok(value),
+            None => {
+                let found: String = String::from_utf8_lossy(&self.word).chars().take(40).collect();
+                Err(self.flaw(Fault::Unexpected { what, found }))
+            }
+        }
+    }
+
+    /// The next `N` bytes.
+    pub(super) fn bytes<const N: usize>(&mut self, what: &'static str) -> Result<[u8; N], Flaw> {
+        let mut bytes = [0; N];
+        match self.input.read_exact(&mut bytes) {
+            Ok(()) => {
+                self.offset += N as u64;
+                Ok(bytes)
+            }
+            Err(e) if e.kind() == std::io::ErrorKind::UnexpectedEof => Err(self.flaw(Fault::Truncated(what))),
+            Err(e) => Err(self.flaw(e.into())),
+        }
+    }
+
+    /// Goes past the end marker of a section whose content nobody wants.
+    pub(super) fn skip_section(&mut self, section: &str) -> Result<(), Flaw> {
+        let start = self.place();
+        let marker = format!("$End{section}").into_bytes();
+        let mut matched = 0;
+        while matched < marker.len() {
+            let Some(byte) = self.peek()? else {
+                return Err(Flaw::new(start, Fault::Truncated("a section that is not read")));
+            };
+            self.step(byte);
+            // The marker's first character occurs nowhere else in it, so a mismatch restarts at once.
+            matched = if byte == marker[matched] { matched + 1 } else { usize::from(byte == marker[0]) };
+        }
+        Ok(())
+    }
+}
