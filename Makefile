@@ -1,0 +1,73 @@
+# sagitta: `make help` lists the targets.
+
+SHELL := /bin/bash
+.SHELLFLAGS := -euo pipefail -c
+.DEFAULT_GOAL := help
+export PATH := $(HOME)/.cargo/bin:$(PATH)
+
+# The Python with the judge's packages. Set it to use an environment of your own; then `venv` does nothing.
+SAGITTA_PYTHON ?= $(CURDIR)/.venv/bin/python
+# The Python that makes .venv.
+PYTHON ?= python3
+# Cargo profile of the tests: they curve meshes, which takes minutes without optimisation. `make test TEST_PROFILE=test` checks
+# overflows and debug assertions too, and takes longer.
+TEST_PROFILE ?= release
+
+TARGET := $(or $(CARGO_TARGET_DIR),target)
+SAGITTA := $(TARGET)/release/sagitta
+
+# The steps of a target run in their order, also under -j.
+.NOTPARALLEL:
+.PHONY: help setup setup-build build demo venv test lint unit bench doc
+
+help: ## this list
+	@echo "sagitta curves linear viscous CFD meshes onto their CAD. Targets:"
+	@awk -F ':[^#]*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' Makefile
+
+setup: setup-build ## install what building and testing need and is missing (Debian 12 or 13; rustup must be there)
+	@.ci/setup test
+
+setup-build: ## install what building alone needs and is missing
+	@.ci/setup build
+
+build: setup-build ## build target/release/sagitta
+	cargo build --release
+
+demo: build ## curve the weeble at P2 and P3 and print the reports (no Python needed)
+	@mkdir -p $(TARGET)/demo
+	@for order in 2 3; do \
+	    echo "== weeble, P$$order -> $(TARGET)/demo/weeble_p$$order.msh"; \
+	    $(SAGITTA) curve fixtures/weeble/weeble.msh --cad fixtures/weeble/weeble.step \
+	        --linkage fixtures/weeble/weeble.meshlink.xml --order $$order \
+	        -o $(TARGET)/demo/weeble_p$$order.msh --report $(TARGET)/demo/weeble_p$$order.json; \
+	done
+
+venv: ## make .venv with the judge's Python packages, where it is missing or outdated
+ifeq ($(SAGITTA_PYTHON),$(CURDIR)/.venv/bin/python)
+	@PYTHON="$(PYTHON)" .ci/venv
+else
+	@"$(SAGITTA_PYTHON)" -c 'import gmsh, meshio, numpy, scipy'
+endif
+
+test: setup venv lint unit ## everything that CI checks: format, clippy, docs, tests, doctests
+
+lint: setup-build ## format, clippy and rustdoc, without warnings
+	cargo fmt --all -- --check
+	cargo clippy --workspace --all-targets -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
+
+unit: setup-build venv ## tests and doctests, by cargo-nextest where it is installed
+	@export SAGITTA_PYTHON="$(SAGITTA_PYTHON)"; \
+	if cargo nextest --version >/dev/null 2>&1; then \
+	    set -x; cargo nextest run --workspace --cargo-profile $(TEST_PROFILE); \
+	else \
+	    set -x; cargo test --workspace --lib --bins --tests --profile $(TEST_PROFILE); \
+	fi
+	SAGITTA_PYTHON="$(SAGITTA_PYTHON)" cargo test --workspace --doc --profile $(TEST_PROFILE)
+
+bench: build ## benchmarks; minutes, not a test
+	cargo bench --workspace
+
+doc: setup-build ## the documentation, in target/doc
+	cargo doc --workspace --no-deps
+	@echo "$(TARGET)/doc/sagitta/index.html"
