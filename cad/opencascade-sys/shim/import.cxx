@@ -1,0 +1,244 @@
+#include "import.hxx"
+#include "guard.hxx"
+#include "opencascade-sys/src/lib.rs.h"
+
+#include <BRepBuilderAPI_Transform.hxx>
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <IGESBasic_Group.hxx>
+#include <IGESControl_Controller.hxx>
+#include <IGESControl_Reader.hxx>
+#include <IGESData_GlobalSection.hxx>
+#include <IGESData_IGESEntity.hxx>
+#include <IGESData_IGESModel.hxx>
+#include <Interface_Static.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <NCollection_DataMap.hxx>
+#include <STEPConstruct_UnitContext.hxx>
+#include <STEPControl_Controller.hxx>
+#include <STEPControl_Reader.hxx>
+#include <StepData_StepModel.hxx>
+#include <StepRepr_GlobalUnitAssignedContext.hxx>
+#include <StepRepr_RepresentationItem.hxx>
+#include <StepShape_FaceSurface.hxx>
+#include <TColStd_SequenceOfAsciiString.hxx>
+#include <TopExp.hxx>
+#include <TopoDS_TShape.hxx>
+#include <TransferBRep.hxx>
+#include <Transfer_Binder.hxx>
+#include <Transfer_TransientProcess.hxx>
+#include <XSControl_TransferReader.hxx>
+#include <XSControl_WorkSession.hxx>
+#include <map>
+#include <set>
+#include <sstream>
+
+namespace occt {
+namespace {
+
+void be_silent() { Message::DefaultMessenger()->ChangePrinters().Clear(); }
+
+std::string text_of(const Handle(TCollection_HAsciiString)& text) { return text.IsNull() ? "" : text->ToCString(); }
+
+// IGES labels are blank padded: "DUP     (7)" is DUP(7).
+std::string trimmed(std::string text) {
+  const size_t bracket = text.rfind('(');
+  if (bracket != std::string::npos && bracket > 0 && text.back() == ')') {
+    size_t end = bracket;
+    while (end > 0 && text[end - 1] == ' ') end--;
+    text = text.substr(0, end) + text.substr(bracket);
+  }
+  const size_t first = text.find_first_not_of(' '), last = text.find_last_not_of(' ');
+  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
+// rust::String refuses bytes that are not UTF-8; old files hold Latin-1.
+rust::String lossy(const std::string& text) { return rust::String::lossy(text); }
+
+struct Origin {
+  std::string reference, name;
+  int rank; // the smallest wins where several entities own one shape
+};
+using Origins = std::map<const TopoDS_TShape*, Origin>;
+
+void remember(Origins& origins, const TopoDS_Shape& shape, Origin origin) {
+  auto [it, fresh] = origins.try_emplace(shape.TShape().get(), origin);
+  if (!fresh && origin.rank < it->second.rank) it->second = origin;
+}
+
+rust::Vec<Label> labels_of(const Shape& shape, const Origins& origins) {
+  rust::Vec<Label> labels;
+  const std::pair<int, const TopTools_IndexedMapOfShape*> kinds[] = {{0, &shape.faces()}, {1, &shape.edges()}, {2, &shape.vertices()}};
+  for (const auto& [kind, map] : kinds)
+    for (int i = 1; i <= map->Extent(); i++) {
+      const auto it = origins.find((*map)(i).TShape().get());
+      if (it == origins.end()) continue;
+      Label label{};
+      label.kind = uint8_t(kind);
+      label.index = uint32_t(i - 1);
+      label.reference = lossy(it->second.reference);
+      label.name = lossy(it->second.name);
+      labels.push_back(label);
+    }
+  return labels;
+}
+
+// Named sets of the file: each becomes labels of kind 3 that share a name.
+void add_group(rust::Vec<Label>& labels, const Shape& shape, const TopoDS_Shape& group, const std::string& reference, const std::string& name) {
+  TopTools_IndexedMapOfShape members;
+  TopExp::MapShapes(group, TopAbs_FACE, members);
+  for (int i = 1; i <= members.Extent(); i++) {
+    const int index = shape.faces().FindIndex(members(i));
+    if (index == 0) continue;
+    Label label{};
+    label.kind = 3;
+    label.index = uint32_t(index - 1);
+    label.reference = lossy(reference);
+    label.name = lossy(name);
+    labels.push_back(label);
+  }
+}
+
+TopoDS_Shape in_file_unit(const TopoDS_Shape& shape, double millimetres) {
+  if (millimetres == 1) return shape;
+  gp_Trsf scale;
+  scale.SetScale(gp_Pnt(0, 0, 0), 1 / millimetres);
+  BRepBuilderAPI_Transform transform(shape, scale, Standard_True);
+  return transform.Shape();
+}
+
+struct Source {
+  TopoDS_Shape shape;
+  std::string unit = "unknown";
+  double millimetres = 1;
+  Origins origins;
+  std::vector<std::tuple<TopoDS_Shape, std::string, std::string>> groups;
+  rust::Vec<rust::String> dropped;
+};
+
+void check_status(IFSelect_ReturnStatus status) {
+  if (status == IFSelect_RetDone) return;
+  throw std::runtime_error(status == IFSelect_RetVoid ? "the file holds nothing" : "the file cannot be parsed (truncated or not of this format?)");
+}
+
+std::string step_id(const Handle(StepData_StepModel)& model, const Handle(Standard_Transient)& entity) {
+  const int id = model->IdentLabel(entity);
+  return "step:#" + std::to_string(id > 0 ? id : model->Number(entity));
+}
+
+void read_step_unit(const Handle(StepData_StepModel)& model, STEPControl_Reader& reader, Source& source) {
+  TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
+  reader.FileUnits(lengths, angles, solid_angles);
+  if (lengths.Length() > 0) source.unit = lengths(1).ToCString();
+  double factor = 0;
+  for (int i = 1; i <= model->NbEntities(); i++) {
+    auto context = Handle(StepRepr_GlobalUnitAssignedContext)::DownCast(model->Value(i));
+    if (context.IsNull()) continue;
+    STEPConstruct_UnitContext units;
+    units.ComputeFactors(context);
+    if (!units.LengthDone()) continue;
+    if (factor == 0) factor = units.LengthFactor();
+  }
+  if (factor > 0) source.millimetres = factor;
+}
+
+void read_step(const std::string& path, Source& source) {
+  STEPControl_Controller::Init();
+  STEPControl_Reader reader;
+  Interface_Static::SetCVal("xstep.cascade.unit", "MM");
+  check_status(reader.ReadFile(path.c_str()));
+  Handle(StepData_StepModel) model = Handle(StepData_StepModel)::DownCast(reader.WS()->Model());
+  for (int i = 1; i <= model->NbEntities(); i++)
+    if (model->IsErrorEntity(i))
+      source.dropped.push_back(lossy(step_id(model, model->Value(i)) + " has errors: " + model->Value(i)->DynamicType()->Name()));
+  reader.TransferRoots();
+  source.shape = reader.OneShape();
+  read_step_unit(model, reader, source);
+  Handle(Transfer_TransientProcess) process = reader.WS()->TransferReader()->TransientProcess();
+  for (int i = 1; i <= process->NbMapped(); i++) {
+    Handle(Standard_Transient) entity = process->Mapped(i);
+    auto item = Handle(StepRepr_RepresentationItem)::DownCast(entity);
+    Handle(Transfer_Binder) binder = process->MapItem(i);
+    const TopoDS_Shape shape = binder.IsNull() ? TopoDS_Shape() : TransferBRep::ShapeResult(binder);
+    if (shape.IsNull()) {
+      if (entity->IsKind(STANDARD_TYPE(StepShape_FaceSurface))) source.dropped.push_back(lossy(step_id(model, entity)));
+      continue;
+    }
+    if (!item.IsNull()) remember(source.origins, shape, {step_id(model, entity), text_of(item->Name()), 0});
+  }
+}
+
+int iges_rank(int type) { return type == 144 || type == 143 || type == 510 || type == 504 ? 0 : type == 128 ? 2 : 1; }
+
+void read_iges_groups(const Handle(IGESData_IGESModel)& model, const Handle(Transfer_TransientProcess)& process, Source& source) {
+  for (int i = 1; i <= process->NbMapped(); i++) {
+    auto entity = Handle(IGESData_IGESEntity)::DownCast(process->Mapped(i));
+    if (entity.IsNull() || entity->TypeNumber() != 402) continue;
+    Handle(Transfer_Binder) binder = process->MapItem(i);
+    const TopoDS_Shape shape = binder.IsNull() ? TopoDS_Shape() : TransferBRep::ShapeResult(binder);
+    if (shape.IsNull()) continue;
+    source.groups.emplace_back(shape, "iges:D" + std::to_string(model->DNum(entity)), trimmed(text_of(entity->NameValue())));
+  }
+}
+
+void read_iges(const std::string& path, Source& source) {
+  IGESControl_Controller::Init();
+  IGESControl_Reader reader;
+  Interface_Static::SetCVal("xstep.cascade.unit", "MM");
+  check_status(reader.ReadFile(path.c_str()));
+  Handle(IGESData_IGESModel) model = Handle(IGESData_IGESModel)::DownCast(reader.WS()->Model());
+  reader.TransferRoots();
+  if (reader.NbShapes() == 0) throw std::runtime_error("the file holds no shape (truncated or empty?)");
+  source.shape = reader.OneShape();
+  source.unit = text_of(model->GlobalSection().UnitName());
+  source.millimetres = model->GlobalSection().UnitValue();
+  Handle(Transfer_TransientProcess) process = reader.WS()->TransferReader()->TransientProcess();
+  for (int i = 1; i <= process->NbMapped(); i++) {
+    auto entity = Handle(IGESData_IGESEntity)::DownCast(process->Mapped(i));
+    if (entity.IsNull()) continue;
+    const std::string reference = "iges:D" + std::to_string(model->DNum(entity));
+    Handle(Transfer_Binder) binder = process->MapItem(i);
+    const TopoDS_Shape shape = binder.IsNull() ? TopoDS_Shape() : TransferBRep::ShapeResult(binder);
+    const int type = entity->TypeNumber();
+    if (shape.IsNull()) {
+      if (type == 144 || type == 143 || type == 510) source.dropped.push_back(lossy(reference));
+      continue;
+    }
+    if (type != 402) remember(source.origins, shape, {reference, trimmed(text_of(entity->NameValue())), iges_rank(type)});
+  }
+  read_iges_groups(model, process, source);
+}
+
+void read_brep(const std::string& path, Source& source) {
+  BRep_Builder builder;
+  if (!BRepTools::Read(source.shape, path.c_str(), builder)) throw std::runtime_error("the file cannot be parsed as BREP");
+}
+
+} // namespace
+
+Import::Import(std::unique_ptr<Shape> shape, std::string unit, double scale, rust::Vec<Label> labels, rust::Vec<rust::String> dropped)
+    : shape_(std::move(shape)), unit_(std::move(unit)), millimetres_(scale), labels_(std::move(labels)), dropped_(std::move(dropped)) {}
+
+rust::Vec<Label> Import::labels() const { return labels_; }
+
+std::unique_ptr<Import> read_file(rust::Str name, Format format) {
+  return guard("reading", [&] {
+    be_silent();
+    const std::string path(name);
+    Source source;
+    if (format == Format::Step) read_step(path, source);
+    else if (format == Format::Iges) read_iges(path, source);
+    else read_brep(path, source);
+    if (source.shape.IsNull()) throw std::runtime_error("no shape came out of it");
+    const Shape read(source.shape);
+    rust::Vec<Label> labels = labels_of(read, source.origins);
+    for (const auto& [shape, reference, title] : source.groups) add_group(labels, read, shape, reference, title);
+    auto scaled = std::make_unique<Shape>(in_file_unit(source.shape, source.millimetres));
+    if (scaled->face_count() != read.face_count() || scaled->edge_count() != read.edge_count())
+      throw std::runtime_error("scaling to the unit of the file changed the topology");
+    return std::make_unique<Import>(std::move(scaled), source.unit, source.millimetres, std::move(labels), std::move(source.dropped));
+  });
+}
+
+} // namespace occt

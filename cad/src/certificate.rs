@@ -1,0 +1,126 @@
+//! When is the foot in a leaf the only one? Where `½|S − x|²` is convex over the leaf's parameters.
+//!
+//! In parameters scaled so that the tangents at the leaf's centre `c` are orthonormal, the Hessian is `G + (S − x)·S''` with `G = I` at the
+//! centre. Over the leaf it differs from `I + (c − x)·S''(c)` by no more than `dg + radius·f + |c − x|·df`, where `dg` bounds the change of
+//! `G`, `f` the size of `S''`, `df` its change, and `radius` the size of the leaf. The three are sampled (4 × 4 points) and
+//! widened by [`BOUND_SAFETY`]; the leaf is certified while the smallest eigenvalue at the centre exceeds that.
+
+use crate::chart::{Chart, Jet, Rect};
+use crate::curve::{Curve, Hull};
+use crate::tolerance::BOUND_SAFETY;
+use glam::DVec3;
+
+/// What [`Certificate::is_convex`] needs to know about a leaf.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Certificate {
+    center: DVec3,
+    /// `S''` at the centre in scaled parameters: 11, 12, 22 (a curve uses the first alone).
+    second: [DVec3; 3],
+    dg: f64,
+    f: f64,
+    df: f64,
+    radius: f64,
+}
+
+/// Scaled derivatives: tangents and second derivatives after `u' = T⁻¹ u`, `T` lower triangular by Gram–Schmidt.
+struct Scaled {
+    first: [DVec3; 2],
+    second: [DVec3; 3],
+}
+
+/// Columns of `T`: `S_u' = t0 S_u`, `S_v' = t1 S_u + t2 S_v`. `None` where the tangents are dependent.
+fn scaling(jet: &Jet) -> Option<[f64; 3]> {
+    let t0 = jet[1].length().recip();
+    let a = jet[1] * t0;
+    let b = jet[2] - jet[2].dot(a) * a;
+    let t2 = b.length().recip();
+    let sound = t0.is_finite() && t2.is_finite() && b.length() > 1e-9 * jet[2].length();
+    sound.then(|| [t0, -jet[2].dot(a) * t0 * t2, t2])
+}
+
+fn scaled(jet: &Jet, [t0, t1, t2]: [f64; 3]) -> Scaled {
+    let [_, a, b, aa, ab, bb] = *jet;
+    Scaled {
+        first: [t0 * a, t1 * a + t2 * b],
+        second: [t0 * t0 * aa, t0 * (t1 * aa + t2 * ab), t1 * t1 * aa + 2.0 * t1 * t2 * ab + t2 * t2 * bb],
+    }
+}
+
+fn norm(second: &[DVec3; 3]) -> f64 {
+    (second[0].length_squared() + 2.0 * second[1].length_squared() + second[2].length_squared()).sqrt()
+}
+
+fn radius(hull: &Hull, center: DVec3) -> f64 {
+    hull.points.iter().map(|p| p.distance(center)).fold(0.0, f64::max) + hull.pad
+}
+
+impl Certificate {
+    /// Of a surface over `rect`; `None` where the tangents vanish (poles) or OCCT finds no derivatives.
+    pub(crate) fn of_surface(chart: &Chart, rect: &Rect, hull: &Hull) -> Option<Self> {
+        let jet = chart.d2_within(rect, rect.center());
+        let t = scaling(&jet)?;
+        let center = scaled(&jet, t);
+        let (mut dg, mut f, mut df) = (0.0_f64, norm(&center.second), 0.0_f64);
+        for k in 0..16 {
+            let at = rect.at(f64::from(k / 4) / 3.0, f64::from(k % 4) / 3.0);
+            let here = scaled(&chart.d2_within(rect, at), t);
+            let [a, b] = here.first;
+            let g = [a.dot(a) - 1.0, a.dot(b), b.dot(b) - 1.0];
+            dg = dg.max((g[0] * g[0] + 2.0 * g[1] * g[1] + g[2] * g[2]).sqrt());
+            f = f.max(norm(&here.second));
+            df = df.max(norm(&[0, 1, 2].map(|i| here.second[i] - center.second[i])));
+        }
+        let certificate = Self {
+            center: jet[0],
+            second: center.second,
+            dg: BOUND_SAFETY * dg,
+            f: BOUND_SAFETY * f,
+            df: BOUND_SAFETY * df,
+            radius: radius(hull, jet[0]),
+        };
+        (dg + f + df).is_finite().then_some(certificate)
+    }
+
+    /// Of a curve over `t0..=t1`.
+    pub(crate) fn of_curve(curve: &Curve, [t0, t1]: [f64; 2], hull: &Hull) -> Option<Self> {
+        let [p, a, aa] = curve.d2(0.5 * (t0 + t1));
+        let t = a.length().recip();
+        let second = t * t * aa;
+        let (mut dg, mut f, mut df) = (0.0_f64, second.length(), 0.0_f64);
+        for k in 0..7 {
+            // inside by a hair: at a knot the neighbouring span would answer
+            let fraction = (f64::from(k) / 6.0).clamp(1e-9, 1.0 - 1e-9);
+            let [_, b, bb] = curve.d2(t0 + (t1 - t0) * fraction);
+            dg = dg.max((t * t * b.length_squared() - 1.0).abs());
+            f = f.max((t * t * bb).length());
+            df = df.max((t * t * bb - second).length());
+        }
+        let certificate = Self {
+            center: p,
+            second: [second, DVec3::ZERO, DVec3::ZERO],
+            dg: BOUND_SAFETY * dg,
+            f: BOUND_SAFETY * f,
+            df: BOUND_SAFETY * df,
+            radius: radius(hull, p),
+        };
+        (dg + f + df).is_finite().then_some(certificate)
+    }
+
+    /// Whether the squared distance from `x` has at most one minimum over the leaf.
+    pub(crate) fn is_convex(&self, x: DVec3) -> bool {
+        let r = self.center - x;
+        let [a, b, c] = self.second.map(|s| s.dot(r));
+        let smallest = 1.0 + 0.5 * ((a + c) - ((a - c) * (a - c) + 4.0 * b * b).sqrt());
+        smallest > self.dg + self.radius * self.f + r.length() * self.df
+    }
+
+    /// Turn of the tangent over the leaf, about, in radians; leaves are cut until it is small.
+    pub(crate) fn turn(&self) -> f64 {
+        self.dg.max(self.radius * self.f)
+    }
+
+    /// Largest distance of a point of the leaf from its centre.
+    pub(crate) fn radius(&self) -> f64 {
+        self.radius
+    }
+}

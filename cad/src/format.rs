@@ -1,0 +1,57 @@
+//! Which format a CAD file is in, by its first bytes.
+
+use crate::model::SourceFormat;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+/// Bytes that are looked at.
+const HEAD: u64 = 4096;
+
+/// The format of a file by its content; `None` for anything unknown.
+///
+/// # Errors
+/// The file cannot be opened or read.
+pub(crate) fn detect(path: &Path) -> io::Result<Option<SourceFormat>> {
+    let mut head = Vec::new();
+    File::open(path)?.take(HEAD).read_to_end(&mut head)?;
+    Ok(of_head(&head))
+}
+
+fn of_head(head: &[u8]) -> Option<SourceFormat> {
+    let holds = |word: &[u8]| head.windows(word.len()).any(|window| window == word);
+    let start = head.trim_ascii_start();
+    if start.starts_with(b"\xef\xbb\xbfISO-10303-21") || start.starts_with(b"ISO-10303-21") || holds(b"ISO-10303-21;") {
+        Some(SourceFormat::Step)
+    } else if start.starts_with(b"DBRep_DrawableShape") || holds(b"CASCADE Topology V") || holds(b"Open CASCADE Topology V") {
+        Some(SourceFormat::Brep)
+    } else if is_iges(head) {
+        Some(SourceFormat::Iges)
+    } else {
+        None
+    }
+}
+
+/// Fixed lines of 80 columns with `S      1` (start section) in the last eight of the first; some writers begin with other letters (`C`: compressed).
+fn is_iges(head: &[u8]) -> bool {
+    head.split(|&b| b == b'\n').take(1).any(|line| {
+        let line = line.strip_suffix(b"\r").unwrap_or(line);
+        line.len() == 80 && matches!(line[72], b'S' | b'C') && line[73..].iter().all(|b| b.is_ascii_digit() || *b == b' ')
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn content_decides() {
+        assert_eq!(of_head(b"ISO-10303-21;\nHEADER;"), Some(SourceFormat::Step));
+        assert_eq!(of_head(b"DBRep_DrawableShape\n\nCASCADE Topology V1"), Some(SourceFormat::Brep));
+        let iges = format!("{:72}S      1\n", "Start");
+        assert_eq!(of_head(iges.as_bytes()), Some(SourceFormat::Iges));
+        for other in [b"".as_slice(), b"solid stl", &[0; 200]] {
+            assert_eq!(of_head(other), None);
+        }
+    }
+}

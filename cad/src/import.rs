@@ -1,0 +1,168 @@
+//! Reading a CAD file: in a child process, because malformed files make OCCT crash or hang.
+
+use crate::assemble;
+use crate::model::Model;
+use crate::payload::{self, Answer};
+use crate::reader::{MEMORY_VARIABLE, READER_SUBCOMMAND};
+use opencascade_sys as sys;
+use std::io::{self, Read};
+use std::os::unix::process::ExitStatusExt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::mpsc;
+use std::time::Duration;
+use thiserror::Error;
+
+/// Limits of the reading child, and which program it is.
+#[derive(Clone, Debug)]
+pub struct ReadOptions {
+    /// Wall time after which the child is ended; default 300 s.
+    pub timeout: Duration,
+    /// Address space of the child in bytes; default 4 GB.
+    pub memory_limit: u64,
+    /// Program that calls [`serve_reader`](crate::serve_reader) when its first argument is [`READER_SUBCOMMAND`]; default this very program.
+    pub reader: PathBuf,
+}
+
+impl Default for ReadOptions {
+    fn default() -> Self {
+        let reader = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("/proc/self/exe"));
+        Self { timeout: Duration::from_secs(300), memory_limit: 4 << 30, reader }
+    }
+}
+
+/// Why a CAD file could not be read. Every variant names the file.
+#[derive(Debug, Error)]
+pub enum ReadError {
+    /// The file cannot be opened.
+    #[error("{}: cannot be opened: {source}", path.display())]
+    Open {
+        /// The CAD file.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// Neither STEP nor IGES nor BREP by its content.
+    #[error("{}: not a CAD file: neither STEP nor IGES nor BREP by its content", path.display())]
+    Format {
+        /// The CAD file.
+        path: PathBuf,
+    },
+    /// The reading program cannot be started.
+    #[error("{}: the reading process {} cannot be run: {source}", path.display(), reader.display())]
+    Reader {
+        /// The CAD file.
+        path: PathBuf,
+        /// The program.
+        reader: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// OCCT understood the file so far as to refuse it.
+    #[error("{}: OpenCASCADE cannot read it: {cause}", path.display())]
+    Refused {
+        /// The CAD file.
+        path: PathBuf,
+        /// What OCCT said.
+        cause: String,
+    },
+    /// OCCT crashed on the file.
+    #[error("{}: OpenCASCADE crashed while reading it ({status}): the file is malformed, e.g. has dangling references", path.display())]
+    Crashed {
+        /// The CAD file.
+        path: PathBuf,
+        /// Signal or exit code of the child.
+        status: ExitStatus,
+    },
+    /// Reading took too long.
+    #[error("{}: reading took longer than {} s and was ended: a malformed file, or raise the time limit", path.display(), limit.as_secs_f64())]
+    TimedOut {
+        /// The CAD file.
+        path: PathBuf,
+        /// The limit.
+        limit: Duration,
+    },
+    /// Reading needed too much memory.
+    #[error("{}: reading needs more than {} MB of memory: a malformed file, or raise the limit", path.display(), limit >> 20)]
+    OutOfMemory {
+        /// The CAD file.
+        path: PathBuf,
+        /// The limit in bytes.
+        limit: u64,
+    },
+    /// Nothing to project on.
+    #[error("{}: the file holds no face and no edge", path.display())]
+    Empty {
+        /// The CAD file.
+        path: PathBuf,
+    },
+}
+
+impl Model {
+    /// Reads a STEP, IGES or BREP file (by content; EGADS files are BREP with a trailer). All lengths come in the unit of the file.
+    ///
+    /// # Errors
+    /// [`ReadError`]: also when OCCT crashes, hangs or eats up the memory, which happens to the child process only.
+    pub fn read(path: &Path, options: &ReadOptions) -> Result<Self, ReadError> {
+        let owned = || path.to_path_buf();
+        match crate::format::detect(path) {
+            Err(source) => return Err(ReadError::Open { path: owned(), source }),
+            Ok(None) => return Err(ReadError::Format { path: owned() }),
+            Ok(Some(_)) => {}
+        }
+        let (bytes, status) = run(path, options)?;
+        let refused = |cause: String| ReadError::Refused { path: owned(), cause };
+        match payload::read(&bytes) {
+            Some((Answer::Model(description), shape)) => {
+                let shape = sys::shape_from_bytes(shape).map_err(|error| refused(error.to_string()))?;
+                assemble::model(path, &shape, description).map_err(refused)
+            }
+            Some((Answer::Failure(cause), _)) if is_memory(&cause) => {
+                Err(ReadError::OutOfMemory { path: owned(), limit: options.memory_limit })
+            }
+            Some((Answer::Failure(cause), _)) if cause.starts_with("no face") => Err(ReadError::Empty { path: owned() }),
+            Some((Answer::Failure(cause), _)) => Err(refused(cause)),
+            // Rust's allocator aborts where C++ throws
+            None if status.signal() == Some(6) => Err(ReadError::OutOfMemory { path: owned(), limit: options.memory_limit }),
+            None => Err(ReadError::Crashed { path: owned(), status }),
+        }
+    }
+}
+
+fn is_memory(cause: &str) -> bool {
+    cause.contains("bad_alloc") || cause.contains("Standard_OutOfMemory")
+}
+
+/// Runs the child to its end or the time limit; gives what it wrote.
+fn run(path: &Path, options: &ReadOptions) -> Result<(Vec<u8>, ExitStatus), ReadError> {
+    let failed = |source| ReadError::Reader { path: path.to_path_buf(), reader: options.reader.clone(), source };
+    let mut child = Command::new(&options.reader)
+        .arg(READER_SUBCOMMAND)
+        .arg(path)
+        .env(MEMORY_VARIABLE, options.memory_limit.to_string())
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .map_err(failed)?;
+    let Some(mut pipe) = child.stdout.take() else { return Err(failed(io::Error::other("it has no standard output"))) };
+    let (sender, receiver) = mpsc::channel();
+    let reading = std::thread::spawn(move || {
+        let mut bytes = Vec::new();
+        let result = pipe.read_to_end(&mut bytes).map(|_| bytes);
+        let _ = sender.send(result); // the receiver has gone after a time-out
+    });
+    let Ok(bytes) = receiver.recv_timeout(options.timeout) else {
+        end(&mut child);
+        let _ = reading.join();
+        return Err(ReadError::TimedOut { path: path.to_path_buf(), limit: options.timeout });
+    };
+    let status = child.wait().map_err(failed)?;
+    Ok((bytes.map_err(failed)?, status))
+}
+
+/// Ends the child and collects it; it may have ended by itself meanwhile.
+fn end(child: &mut Child) {
+    let _ = child.kill();
+    let _ = child.wait();
+}

@@ -1,0 +1,99 @@
+//! The reading child: the only process in which OCCT parses a file.
+
+use crate::assemble;
+use crate::format;
+use crate::group::Group;
+use crate::model::{Model, SourceFormat};
+use crate::payload::{self, Answer, Description, RawLabel};
+use opencascade_sys as sys;
+use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
+use std::fs::File;
+use std::os::fd::OwnedFd;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// First argument with which a program must call [`serve_reader`]; the second is the file.
+pub const READER_SUBCOMMAND: &str = "__read-cad";
+
+/// Variable in which the parent hands the memory limit (bytes) to the child.
+pub(crate) const MEMORY_VARIABLE: &str = "SAGITTA_READER_MEMORY";
+
+/// Body of the hidden subcommand: reads the file with OCCT, rehearses on every entity what the parent will do, and writes the model to
+/// standard output. Nothing else reaches standard output, whatever OCCT prints.
+pub fn serve_reader(path: &Path) -> ExitCode {
+    limit_memory();
+    let Some(out) = take_stdout() else { return ExitCode::FAILURE };
+    let (answer, shape) = match read(path) {
+        Ok((description, shape)) => (Answer::Model(description), shape),
+        Err(cause) => (Answer::Failure(cause), Vec::new()),
+    };
+    match payload::write(std::io::BufWriter::new(File::from(out)), &answer, &shape) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(_) => ExitCode::FAILURE,
+    }
+}
+
+fn limit_memory() {
+    let Some(bytes) = std::env::var(MEMORY_VARIABLE).ok().and_then(|text| text.parse().ok()) else { return };
+    let maximum = getrlimit(Resource::As).maximum;
+    let current = maximum.map_or(bytes, |maximum: u64| maximum.min(bytes));
+    // a limit that the system refuses leaves the parent's time limit
+    let _ = setrlimit(Resource::As, Rlimit { current: Some(current), maximum });
+}
+
+/// Keeps the pipe to the parent and points standard output to `/dev/null`.
+fn take_stdout() -> Option<OwnedFd> {
+    let pipe = rustix::io::dup(std::io::stdout()).ok()?;
+    let null = File::options().write(true).open("/dev/null").ok()?;
+    rustix::stdio::dup2_stdout(&null).ok()?;
+    Some(pipe)
+}
+
+fn read(path: &Path) -> Result<(Description, Vec<u8>), String> {
+    let format = match format::detect(path) {
+        Ok(Some(format)) => format,
+        Ok(None) => return Err("it is neither STEP nor IGES nor BREP".into()),
+        Err(error) => return Err(error.to_string()),
+    };
+    let name = path.to_str().ok_or("its path is not UTF-8, which OCCT needs")?;
+    let asked = match format {
+        SourceFormat::Step => sys::Format::Step,
+        SourceFormat::Iges => sys::Format::Iges,
+        SourceFormat::Brep => sys::Format::Brep,
+    };
+    let import = sys::read_file(name, asked).map_err(|error| error.to_string())?;
+    let label = |label: sys::Label| RawLabel { kind: label.kind, index: label.index, reference: label.reference, name: label.name };
+    let description = || Description {
+        format,
+        unit_name: import.unit(),
+        millimetres: import.millimetres_per_unit(),
+        labels: import.labels().into_iter().map(label).collect(),
+        dropped: import.dropped(),
+    };
+    let shape = import.shape().bytes().map_err(|error| error.to_string())?;
+    let restored = sys::shape_from_bytes(&shape).map_err(|error| error.to_string())?;
+    rehearse(&assemble::model(path, &restored, description())?)?;
+    Ok((description(), shape))
+}
+
+/// Does on every entity what the parent's queries do, so that what makes OCCT crash does it here.
+fn rehearse(model: &Model) -> Result<(), String> {
+    if model.faces().is_empty() && model.edges().is_empty() {
+        return Err("no face and no edge came out of it".into());
+    }
+    for face in model.faces() {
+        let [u, v] = face.parameters;
+        for (s, t) in [(u[0], v[0]), (u[1], v[0]), (u[0], v[1]), (u[1], v[1]), (0.5 * (u[0] + u[1]), 0.5 * (v[0] + v[1]))] {
+            let _ = model.evaluate(face.id.into(), [s, t]);
+        }
+        if let Ok(group) = Group::of_faces(model, &[face.id]) {
+            let _ = group.closest(face.bounds.center(), None);
+        }
+    }
+    for edge in model.edges() {
+        for t in edge.parameters {
+            let _ = model.evaluate(edge.id.into(), [t, 0.0]);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,35 @@
+//! Every tolerance of the crate, by name. Lengths are given as fractions of the model's diagonal unless said otherwise.
+
+/// Two feet whose distances differ by less are a tie: an interior foot beats one on an edge, then the smaller entity wins. Fraction of the diagonal.
+pub const TIE: f64 = 1e-12;
+
+/// Largest tangential residual `|(S − x)·t|`, `t` a unit tangent, of a foot that counts as orthogonal. Fraction of the
+/// diagonal plus of the foot's distance.
+pub const ORTHOGONAL: f64 = 1e-10;
+
+/// A leaf smaller than this is not cut further: all its points are the same point. Fraction of the diagonal.
+pub const POINT: f64 = 1e-10;
+
+/// Newton's last relative step (fraction of the leaf's parameter range).
+pub const NEWTON_STEP: f64 = 1e-14;
+
+/// Newton steps for one leaf; certified leaves take 3 to 6.
+pub const NEWTON_LIMIT: usize = 40;
+
+/// Cuts of leaves that one query may spend to prove its answer; beyond it the foot is reported as not proven.
+pub const CUT_BUDGET: usize = 400;
+
+/// Turn of the tangent plane over a leaf, in radians, to which leaves are cut when a model is built.
+pub const LEAF_TURN: f64 = 0.35;
+
+/// Levels of cutting when a model is built.
+pub const LEAF_DEPTH: u32 = 12;
+
+/// Levels of cutting of leaves that a trim crosses, when a model is built.
+pub const TRIM_DEPTH: u32 = 4;
+
+/// Sampled derivative bounds of a leaf are widened by this factor.
+pub const BOUND_SAFETY: f64 = 1.5;
+
+/// A trimming curve that enters a leaf by less than this fraction of the leaf's size only touches it.
+pub const TOUCH: f64 = 1e-9;

@@ -1,0 +1,101 @@
+//! Reading files: counts, order, units, references, and what bad files get.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+mod common;
+
+use cad::{EdgeId, EntityId, FaceId, Kind, Model, ReadError, SourceFormat};
+use common::{fixture, options};
+use std::time::Duration;
+
+#[test]
+fn weeble_has_the_numbers_of_its_mesh() {
+    let model = fixture("weeble/weeble.step");
+    assert_eq!(model.format(), SourceFormat::Step);
+    assert_eq!((model.faces().len(), model.edges().len(), model.vertices().len()), (4, 10, 6));
+    assert_eq!(model.face(FaceId::new(0)).unwrap().kind, Kind::Sphere);
+    let degenerate: Vec<u32> = model.edges().iter().filter(|e| e.degenerate).map(|e| e.id.tag()).collect();
+    assert!(degenerate.contains(&2), "edge 2 is a pole: {degenerate:?}");
+    assert!(model.edge(EdgeId::new(0)).unwrap().seam);
+    assert_eq!(model.unit().metres, Some(0.001));
+}
+
+#[test]
+fn formats_agree() {
+    for case in ["weeble/weeble", "torus/torus", "wing_sharp/wing_sharp"] {
+        let (step, iges) = (fixture(&format!("{case}.step")), fixture(&format!("{case}.igs")));
+        assert_eq!(step.faces().len(), iges.faces().len(), "{case}");
+        let (a, b) = (step.bounds(), iges.bounds());
+        let apart = a.min.distance(b.min).max(a.max.distance(b.max));
+        assert!(apart < 1e-3 * step.diagonal(), "{case}: boxes {a:?} {b:?}");
+    }
+}
+
+#[test]
+fn references_resolve() {
+    let model = fixture("weeble/weeble.step");
+    let face = |i| vec![EntityId::Face(FaceId::new(i))];
+    assert_eq!(model.resolve("face:2").unwrap(), face(1));
+    assert_eq!(model.resolve("face-2").unwrap(), face(1));
+    let reference = &model.face(FaceId::new(1)).unwrap().label.reference;
+    assert!(reference.starts_with("step:#"), "{reference:?}");
+    assert_eq!(model.resolve(reference).unwrap(), face(1));
+    let shared = model.resolve("faces:2|3").unwrap();
+    assert_eq!(shared.len(), 1);
+    for bad in ["", "face", "face:0", "face:5", "name:nobody", "step:#999999", "wing", "faces:1|2", "edge:-1"] {
+        assert!(model.resolve(bad).is_err(), "{bad:?}");
+    }
+}
+
+#[test]
+fn bad_files_get_errors() {
+    let dir = tempfile::tempdir().unwrap();
+    let write = |name: &str, bytes: &[u8]| {
+        let path = dir.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        path
+    };
+    let step = std::fs::read(common::path("weeble/weeble.step")).unwrap();
+    let iges = std::fs::read(common::path("weeble/weeble.igs")).unwrap();
+    let cut = |bytes: &[u8], percent: usize| bytes[..bytes.len() * percent / 100].to_vec();
+    for (name, bytes) in [
+        ("empty.step", Vec::new()),
+        ("garbage.step", b"not a CAD file at all".to_vec()),
+        ("zeros.igs", vec![0; 4000]),
+        ("cut.step", cut(&step, 50)),
+        ("head.step", cut(&step, 2)),
+        ("cut.igs", cut(&iges, 20)),
+        ("words.brep", b"DBRep_DrawableShape\nCASCADE Topology V1\nnonsense".to_vec()),
+    ] {
+        let path = write(name, &bytes);
+        let error = Model::read(&path, &options()).expect_err(name);
+        assert!(error.to_string().contains(name), "{error}");
+    }
+    assert!(matches!(Model::read(&dir.path().join("absent.step"), &options()), Err(ReadError::Open { .. })));
+}
+
+#[test]
+fn crash_and_hang_of_the_child_are_errors() {
+    let path = common::path("weeble/weeble.step");
+    let crashing = cad::ReadOptions { reader: "/bin/false".into(), ..options() };
+    assert!(matches!(Model::read(&path, &crashing), Err(ReadError::Crashed { .. })));
+    let absent = cad::ReadOptions { reader: "/nowhere/reader".into(), ..options() };
+    assert!(matches!(Model::read(&path, &absent), Err(ReadError::Reader { .. })));
+    let hasty = cad::ReadOptions { timeout: Duration::ZERO, ..options() };
+    assert!(matches!(Model::read(&path, &hasty), Err(ReadError::TimedOut { .. })));
+    let poor = cad::ReadOptions { memory_limit: 40 << 20, ..options() };
+    assert!(Model::read(&path, &poor).is_err());
+}
+
+/// An entity that refers to a missing one makes OCCT 7.6 dereference null.
+#[test]
+fn dangling_references_do_not_end_the_parent() {
+    let text = std::fs::read_to_string(common::path("weeble/weeble.step")).unwrap();
+    let dir = tempfile::tempdir().unwrap();
+    for (i, word) in ["CARTESIAN_POINT", "VERTEX_POINT", "ADVANCED_FACE", "DIRECTION", "EDGE_LOOP"].iter().enumerate() {
+        let path = dir.path().join(format!("{i}.step"));
+        std::fs::write(&path, text.replacen(&format!("= {word}("), "= NOTHING(", 3)).unwrap();
+        if let Err(error) = Model::read(&path, &options()) {
+            assert!(error.to_string().contains(&format!("{i}.step")), "{error}");
+        }
+    }
+}
