@@ -115,9 +115,21 @@ impl<'a> Field<'a> {
         let mut reach = vec![0.0f64; linear_nodes];
         for f in wall {
             let m = f.nodes.iter().map(|n| displacement[n.index()].length()).fold(0.0, f64::max);
-            for c in f.corners() { reach[c.index()] = reach[c.index()].max(m); }
+            for c in f.corners() {
+                reach[c.index()] = reach[c.index()].max(m);
+            }
         }
-        Field { reach, order: mesh.order, points, wall, displacement, roots, starts, around, tree: BoxTree::new(&boxes) }
+        Field {
+            reach,
+            order: mesh.order,
+            points,
+            wall,
+            displacement,
+            roots,
+            starts,
+            around,
+            tree: BoxTree::new(&boxes),
+        }
     }
 
     /// Equation (1) at the combination `weights` of linear nodes.
@@ -140,8 +152,21 @@ impl<'a> Field<'a> {
             Ok("lin") => 1.0 / (1.0 + t),
             Ok("q4") => 1.0 / (1.0 + t * t * t * t).sqrt(),
             Ok("hat") => (1.0 - t).max(0.0),
-            Ok("cos") => if t < 1.0 { let c = 1.0 - t * t; c * c } else { 0.0 },
-            _ => if t <= 1.0 { 1.0 } else { 1.0 / t },
+            Ok("cos") => {
+                if t < 1.0 {
+                    let c = 1.0 - t * t;
+                    c * c
+                } else {
+                    0.0
+                }
+            }
+            _ => {
+                if t <= 1.0 {
+                    1.0
+                } else {
+                    1.0 / t
+                }
+            }
         };
         p * f
     }

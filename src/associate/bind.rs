@@ -1,0 +1,439 @@
+//! Claims held against the CAD: groups are made, points must lie on them, and every boundary item gets its host.
+
+use std::collections::BTreeSet;
+
+use cad::{Aabb, EdgeId, EntityId, Evaluation, FaceId, Group, Kind, Model, VertexId};
+use glam::DVec3;
+use rustc_hash::FxHashMap;
+
+use super::{AssociateError, Association, Boundary, Claimed, Claims, Curve, Host, Plane, Surface};
+use crate::mesh::{EntityKey, Mesh, NodeId};
+
+/// A point this near to a CAD entity lies on it; share of the model's diagonal.
+const ON_ENTITY: f64 = 1e-6;
+/// How far mesh and CAD boxes may differ in size before the unit is taken to differ.
+const SAME_SIZE: f64 = 1.5;
+/// Factors between units of length that people mix up.
+const UNITS: [f64; 7] = [1000.0, 25.4, 304.8, 12.0, 100.0, 10.0, 39.370_078_740_157_48];
+
+/// Ties a mesh to its CAD.
+///
+/// `max_offset`, a share of the mesh's box, is how far a point may be from an entity that a trusted source names.
+///
+/// # Errors
+/// [`AssociateError`].
+pub fn associate(
+    mesh: &Mesh,
+    boundary: &Boundary,
+    model: &Model,
+    claims: &Claims,
+    max_offset: f64,
+) -> Result<Association, AssociateError> {
+    let faces_linked = claims.sheets.iter().filter(|s| !s.entities.is_empty()).count();
+    if faces_linked == 0 {
+        return Err(AssociateError::Nothing { surfaces: claims.sheets.len(), faces: model.faces().len() });
+    }
+    check_boxes(mesh, boundary, model, claims)?;
+    let limit = max_offset * Aabb::of_points(mesh.points.iter().copied()).diagonal();
+    let slack = ON_ENTITY * model.diagonal();
+    let mut binder = Binder {
+        mesh,
+        boundary,
+        model,
+        limit,
+        slack,
+        result: Association::default(),
+        known_surfaces: FxHashMap::default(),
+        known_curves: FxHashMap::default(),
+        singles: FxHashMap::default(),
+    };
+    binder.faces(claims)?;
+    binder.edges(claims)?;
+    binder.nodes(claims);
+    Ok(binder.result)
+}
+
+struct Binder<'a> {
+    mesh: &'a Mesh,
+    boundary: &'a Boundary,
+    model: &'a Model,
+    /// How far a point may be from what it is tied to.
+    limit: f64,
+    /// How far a point may be from what it *lies on*; grows with the offsets that the surfaces show.
+    slack: f64,
+    result: Association,
+    known_surfaces: FxHashMap<Vec<EntityId>, usize>,
+    known_curves: FxHashMap<Vec<EntityId>, usize>,
+    /// Groups of one edge each, for the search of an edge's curve.
+    singles: FxHashMap<EdgeId, Option<Group>>,
+}
+
+impl Binder<'_> {
+    fn faces(&mut self, claims: &Claims) -> Result<(), AssociateError> {
+        self.result.faces = vec![Host::Straight; self.boundary.faces.len()];
+        let mut linked = vec![false; self.boundary.faces.len()];
+        for sheet in claims.sheets.iter().filter(|s| !s.entities.is_empty()) {
+            let host = Host::Surface(self.surface(sheet)?);
+            for &face in &sheet.items {
+                self.result.faces[face] = host;
+                linked[face] = true;
+            }
+        }
+        let mut unlinked: FxHashMap<EntityKey, usize> = FxHashMap::default();
+        let mut patches: Vec<Vec<usize>> = Vec::new();
+        for face in (0..linked.len()).filter(|&f| !linked[f]) {
+            let patch = *unlinked.entry(self.boundary.faces[face].entity).or_insert_with(|| {
+                patches.push(Vec::new());
+                patches.len() - 1
+            });
+            patches[patch].push(face);
+        }
+        for patch in patches {
+            self.unlinked(&patch);
+        }
+        Ok(())
+    }
+
+    /// The surface of a sheet, its points held against it.
+    fn surface(&mut self, sheet: &Claimed<usize>) -> Result<usize, AssociateError> {
+        let mut entities = sheet.entities.clone();
+        entities.sort_unstable();
+        entities.dedup();
+        let index = match self.known_surfaces.get(&entities) {
+            Some(&index) => index,
+            None => {
+                let ids: Vec<FaceId> = entities.iter().filter_map(|e| face_of(*e)).collect();
+                let group = Group::of_faces(self.model, &ids).map_err(|cause| self.bad_group(sheet, &cause))?;
+                let plane = self.common_plane(&ids);
+                let label = format!("{} ({})", sheet.label, names(&entities));
+                self.result.surfaces.push(Surface { group, label, plane });
+                self.known_surfaces.insert(entities.clone(), self.result.surfaces.len() - 1);
+                self.result.surfaces.len() - 1
+            }
+        };
+        let nodes: BTreeSet<NodeId> =
+            sheet.items.iter().flat_map(|&f| self.boundary.corners[f].iter().copied()).collect();
+        let farthest = self.held(&self.result.surfaces[index].group, &sheet.label, &entities, nodes)?;
+        // Noise that the surfaces show must be granted to the edges too.
+        self.slack = self.slack.max(4.0 * farthest);
+        Ok(index)
+    }
+
+    /// The largest distance of the nodes to a group.
+    fn held(
+        &self,
+        group: &Group,
+        label: &str,
+        entities: &[EntityId],
+        nodes: BTreeSet<NodeId>,
+    ) -> Result<f64, AssociateError> {
+        let nodes: Vec<NodeId> = nodes.into_iter().collect();
+        let places: Vec<DVec3> = nodes.iter().map(|n| self.mesh.points[n.index()]).collect();
+        let feet = group.closest_batch(&places, &[]);
+        let off = feet.iter().filter(|f| f.distance > self.limit).count();
+        let worst = (0..feet.len()).max_by(|&a, &b| feet[a].distance.total_cmp(&feet[b].distance));
+        let Some(worst) = worst else { return Ok(0.0) };
+        if off > 0 {
+            return Err(AssociateError::Off {
+                label: label.to_owned(),
+                entities: names(entities),
+                count: off,
+                node: self.mesh.node_tags[nodes[worst].index()],
+                at: places[worst],
+                distance: feet[worst].distance,
+                limit: self.limit,
+            });
+        }
+        Ok(feet[worst].distance)
+    }
+
+    fn bad_group<T>(&self, claim: &Claimed<T>, cause: &dyn std::fmt::Display) -> AssociateError {
+        let label = format!("{} ({})", claim.label, names(&claim.entities));
+        AssociateError::Group { label, cause: cause.to_string() }
+    }
+
+    /// The plane that all the faces lie in.
+    fn common_plane(&self, faces: &[FaceId]) -> Option<Plane> {
+        let mut common: Option<Plane> = None;
+        for &id in faces {
+            let face = self.model.face(id)?;
+            if face.kind != Kind::Plane {
+                return None;
+            }
+            let middle = face.parameters.map(|[from, to]| 0.5 * (from + to));
+            let Evaluation::Surface(at) = self.model.evaluate(id.into(), middle)? else { return None };
+            let own = Plane { point: at.point, normal: at.normal? };
+            match common {
+                None => common = Some(own),
+                Some(plane) => {
+                    let apart = plane.closest(own.point).distance(own.point);
+                    if plane.normal.cross(own.normal).length() > ON_ENTITY || apart > self.slack {
+                        return None;
+                    }
+                }
+            }
+        }
+        common
+    }
+
+    /// An unlinked patch keeps its plane, if it has one, or its straight faces.
+    fn unlinked(&mut self, patch: &[usize]) {
+        let nodes: BTreeSet<NodeId> = patch.iter().flat_map(|&f| self.boundary.corners[f].iter().copied()).collect();
+        let places: Vec<DVec3> = nodes.iter().map(|n| self.mesh.points[n.index()]).collect();
+        let entity = self.boundary.faces[patch[0]].entity;
+        let what = format!("{entity}: {} faces are not tied to the CAD", patch.len());
+        let host = match plane_through(&places, self.slack) {
+            Some(plane) => {
+                self.result.notes.push(format!("{what}; they stay in their plane"));
+                self.result.planes.push(plane);
+                Host::Plane(self.result.planes.len() - 1)
+            }
+            None => {
+                self.result.notes.push(format!("{what} and are not plane; they stay straight"));
+                Host::Straight
+            }
+        };
+        for &face in patch {
+            self.result.faces[face] = host;
+        }
+    }
+
+    fn edges(&mut self, claims: &Claims) -> Result<(), AssociateError> {
+        self.result.edges = vec![Host::Straight; self.boundary.edges.len()];
+        let mut done = vec![false; self.boundary.edges.len()];
+        for string in &claims.strings {
+            let edges: Vec<usize> = string.items.iter().filter_map(|&ends| self.boundary.edge(ends)).collect();
+            let trusted = claims.trusted;
+            if let Some(curve) = self.claimed_curve(string, &edges, trusted)? {
+                for edge in edges {
+                    self.result.edges[edge] = Host::Curve(curve);
+                    done[edge] = true;
+                }
+            }
+        }
+        for edge in (0..done.len()).filter(|&e| !done[e]) {
+            self.result.edges[edge] = self.unclaimed(edge)?;
+        }
+        Ok(())
+    }
+
+    /// The curve of a string: as claimed where its points lie there, else by the surfaces that meet in it.
+    fn claimed_curve(
+        &mut self,
+        string: &Claimed<[NodeId; 2]>,
+        edges: &[usize],
+        trusted: bool,
+    ) -> Result<Option<usize>, AssociateError> {
+        let ids: Vec<EdgeId> = string.entities.iter().filter_map(|e| edge_of(*e)).collect();
+        if !ids.is_empty() {
+            let nodes: BTreeSet<NodeId> = string.items.iter().flatten().copied().collect();
+            if let Ok(group) = Group::of_edges(self.model, &ids) {
+                let places: Vec<DVec3> = nodes.iter().map(|n| self.mesh.points[n.index()]).collect();
+                let farthest = group.closest_batch(&places, &[]).iter().map(|f| f.distance).fold(0.0, f64::max);
+                if farthest <= self.slack {
+                    return Ok(Some(self.curve(ids, &string.label, group)));
+                }
+                if trusted {
+                    self.held(&group, &string.label, &string.entities, nodes)?;
+                    return Ok(Some(self.curve(ids, &string.label, group)));
+                }
+            }
+        }
+        let found: Option<Vec<BTreeSet<EdgeId>>> = edges.iter().map(|&e| self.candidates(e)).collect();
+        let union: BTreeSet<EdgeId> = found.into_iter().flatten().flatten().collect();
+        if union.is_empty() {
+            return Ok(None);
+        }
+        self.result.notes.push(format!("{}: found on {}", string.label, list(union.iter())));
+        let ids: Vec<EdgeId> = union.into_iter().collect();
+        let group = Group::of_edges(self.model, &ids).map_err(|cause| self.bad_group(string, &cause))?;
+        Ok(Some(self.curve(ids, &string.label, group)))
+    }
+
+    fn curve(&mut self, mut ids: Vec<EdgeId>, label: &str, group: Group) -> usize {
+        ids.sort_unstable();
+        ids.dedup();
+        let key: Vec<EntityId> = ids.iter().map(|&id| id.into()).collect();
+        let curves = &mut self.result.curves;
+        *self.known_curves.entry(key).or_insert_with(|| {
+            curves.push(Curve { group, label: format!("{label} ({})", list(ids.iter())) });
+            curves.len() - 1
+        })
+    }
+
+    /// The host of an edge that no string holds: that of its faces where they agree.
+    fn unclaimed(&mut self, edge: usize) -> Result<Host, AssociateError> {
+        let hosts: Vec<Host> = self.boundary.edge_faces[edge].iter().map(|&f| self.result.faces[f]).collect();
+        let Some(&first) = hosts.first() else { return Ok(Host::Straight) };
+        if hosts.iter().all(|&h| h == first) {
+            return Ok(first);
+        }
+        let surfaces: Vec<usize> = hosts.iter().filter_map(|h| surface_of(*h)).collect();
+        if surfaces.is_empty() {
+            return Ok(Host::Straight);
+        }
+        let found = self.candidates(edge).unwrap_or_default();
+        let ids: Vec<EdgeId> = found.into_iter().collect();
+        match Group::of_edges(self.model, &ids) {
+            Ok(group) => Ok(Host::Curve(self.curve(ids, "edge between surfaces", group))),
+            Err(_) => {
+                let [a, b] = self.boundary.edges[edge].map(|n| self.mesh.node_tags[n.index()]);
+                let label = |h: Option<&Host>| match h {
+                    Some(&Host::Surface(s)) => self.result.surfaces[s].label.clone(),
+                    _ => "a patch that is not tied to the CAD".to_owned(),
+                };
+                let other = hosts.iter().find(|&&h| h != first);
+                Err(AssociateError::NoCurve { a, b, first: label(Some(&first)), second: label(other) })
+            }
+        }
+    }
+
+    /// CAD edges, of the surfaces at a mesh edge, that hold its ends and run beside it; `None` where there is none.
+    fn candidates(&mut self, edge: usize) -> Option<BTreeSet<EdgeId>> {
+        let mut nearby = BTreeSet::new();
+        for &face in &self.boundary.edge_faces[edge] {
+            let Host::Surface(surface) = self.result.faces[face] else { continue };
+            for id in self.result.surfaces[surface].group.entities().iter().filter_map(|e| face_of(*e)) {
+                nearby.extend(self.model.face(id).map_or(&[][..], |f| &f.edges).iter().copied());
+            }
+        }
+        let [a, b] = self.boundary.edges[edge].map(|n| self.mesh.points[n.index()]);
+        let slack = self.slack;
+        let holds = |id: &EdgeId| {
+            let model = self.model;
+            let single = self.singles.entry(*id).or_insert_with(|| Group::of_edges(model, &[*id]).ok());
+            let Some(group) = single else { return false };
+            let near = |x: DVec3, limit: f64| group.closest(x, None).distance <= limit;
+            near(a, slack) && near(b, slack) && near(0.5 * (a + b), 0.5 * a.distance(b))
+        };
+        let found: BTreeSet<EdgeId> = nearby.into_iter().filter(holds).collect();
+        (!found.is_empty()).then_some(found)
+    }
+
+    fn nodes(&mut self, claims: &Claims) {
+        let mut hosts: Vec<BTreeSet<Rank>> = vec![BTreeSet::new(); self.mesh.points.len()];
+        for (edge, ends) in self.boundary.edges.iter().enumerate() {
+            for end in ends {
+                hosts[end.index()].insert(Rank::of(self.result.edges[edge]));
+            }
+        }
+        for (face, corners) in self.boundary.corners.iter().enumerate() {
+            for corner in corners {
+                hosts[corner.index()].insert(Rank::of(self.result.faces[face]));
+            }
+        }
+        self.result.nodes = (0..hosts.len()).map(|n| self.lowest(&hosts[n], self.mesh.points[n])).collect();
+        for point in &claims.points {
+            let vertex = point.entities.iter().find_map(|e| vertex_of(*e)).and_then(|id| self.model.vertex(id));
+            for node in &point.items {
+                let near = |v: &&cad::Vertex| v.point.distance(self.mesh.points[node.index()]) <= self.slack;
+                if let Some(vertex) = vertex.filter(near) {
+                    self.result.nodes[node.index()] = Host::Vertex(vertex.point);
+                }
+            }
+        }
+    }
+
+    /// The lowest of the hosts around a node.
+    fn lowest(&self, around: &BTreeSet<Rank>, x: DVec3) -> Host {
+        let curves: Vec<usize> =
+            around.iter().filter_map(|r| if let Rank::Curve(c) = r { Some(*c) } else { None }).collect();
+        match curves[..] {
+            [] => around.first().map_or(Host::Free, |rank| rank.host()),
+            [only] => Host::Curve(only),
+            _ => {
+                let near = self.model.vertices().iter().map(|v| (v.point.distance(x), v.point));
+                let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0));
+                match nearest {
+                    Some((distance, point)) if distance <= self.slack => Host::Vertex(point),
+                    _ => Host::Curve(curves[0]),
+                }
+            }
+        }
+    }
+}
+
+/// Hosts without coordinates, lowest first: what a node at the meeting of several takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Rank {
+    Curve(usize),
+    Straight,
+    Surface(usize),
+    Plane(usize),
+}
+
+impl Rank {
+    fn of(host: Host) -> Rank {
+        match host {
+            Host::Curve(c) => Rank::Curve(c),
+            Host::Surface(s) => Rank::Surface(s),
+            Host::Plane(p) => Rank::Plane(p),
+            Host::Straight | Host::Free | Host::Vertex(_) => Rank::Straight,
+        }
+    }
+
+    fn host(self) -> Host {
+        match self {
+            Rank::Curve(c) => Host::Curve(c),
+            Rank::Surface(s) => Host::Surface(s),
+            Rank::Plane(p) => Host::Plane(p),
+            Rank::Straight => Host::Straight,
+        }
+    }
+}
+
+fn face_of(entity: EntityId) -> Option<FaceId> {
+    if let EntityId::Face(id) = entity { Some(id) } else { None }
+}
+
+fn edge_of(entity: EntityId) -> Option<EdgeId> {
+    if let EntityId::Edge(id) = entity { Some(id) } else { None }
+}
+
+fn vertex_of(entity: EntityId) -> Option<VertexId> {
+    if let EntityId::Vertex(id) = entity { Some(id) } else { None }
+}
+
+fn surface_of(host: Host) -> Option<usize> {
+    if let Host::Surface(index) = host { Some(index) } else { None }
+}
+
+fn names(entities: &[EntityId]) -> String {
+    list(entities.iter())
+}
+
+fn list(items: impl Iterator<Item = impl std::fmt::Display>) -> String {
+    items.map(|item| item.to_string()).collect::<Vec<_>>().join(", ")
+}
+
+/// The plane of points that lie in one, within `slack`.
+fn plane_through(points: &[DVec3], slack: f64) -> Option<Plane> {
+    let &origin = points.first()?;
+    let far = |from: DVec3| points.iter().copied().max_by(|a, b| a.distance(from).total_cmp(&b.distance(from)));
+    let across = (far(origin)? - origin).try_normalize()?;
+    let aside = points.iter().map(|&p| (p - origin).cross(across));
+    let normal = aside.max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))?.try_normalize()?;
+    let plane = Plane { point: origin, normal };
+    points.iter().all(|&p| plane.closest(p).distance(p) <= slack).then_some(plane)
+}
+
+/// Refuses a CAD of another size or at another place than what is tied to it.
+fn check_boxes(mesh: &Mesh, boundary: &Boundary, model: &Model, claims: &Claims) -> Result<(), AssociateError> {
+    let linked = || claims.sheets.iter().filter(|s| !s.entities.is_empty());
+    let corners = linked().flat_map(|s| s.items.iter()).flat_map(|&f| boundary.corners[f].iter());
+    let own = Aabb::of_points(corners.map(|n| mesh.points[n.index()]));
+    let entities = linked().flat_map(|s| s.entities.iter()).filter_map(|e| model.face(face_of(*e)?));
+    let theirs = entities.fold(Aabb::EMPTY, |all, face| all.union(face.bounds));
+    let (size, cad) = (own.diagonal(), theirs.diagonal());
+    let ratio = size / cad;
+    if !(1.0 / SAME_SIZE..=SAME_SIZE).contains(&ratio) {
+        let near = |factor: &f64| (ratio / factor).ln().abs() < 0.1;
+        let factor = UNITS.into_iter().flat_map(|u| [u, 1.0 / u]).find(|f| near(f)).unwrap_or(ratio);
+        return Err(AssociateError::Scale { mesh: size, cad, factor });
+    }
+    let distance = own.center().distance(theirs.center());
+    if distance > 0.5 * size {
+        return Err(AssociateError::Place { mesh: size, distance });
+    }
+    Ok(())
+}

@@ -1,0 +1,86 @@
+//! The faces and edges of a linear mesh that can lie on CAD.
+
+use rustc_hash::FxHashMap;
+
+use crate::element::{Cell, Order, canonical};
+use crate::mesh::{EntityKey, Mesh, NodeId};
+
+/// A two-dimensional element of the mesh file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoundaryFace {
+    /// Triangle or quadrilateral.
+    pub cell: Cell,
+    /// Its block in the mesh, and its place there.
+    pub block: usize,
+    /// Its place in the block.
+    pub element: usize,
+    /// The mesh entity that it belongs to.
+    pub entity: EntityKey,
+}
+
+/// The two-dimensional elements of a mesh and their edges.
+#[derive(Debug, Default)]
+pub struct Boundary {
+    /// All of them, in file order.
+    pub faces: Vec<BoundaryFace>,
+    /// Corners of each face, in file order.
+    pub corners: Vec<Vec<NodeId>>,
+    /// Every edge of a face once, smaller node first.
+    pub edges: Vec<[NodeId; 2]>,
+    /// The faces at each edge.
+    pub edge_faces: Vec<Vec<usize>>,
+    by_corners: FxHashMap<Vec<NodeId>, usize>,
+    by_ends: FxHashMap<[NodeId; 2], usize>,
+}
+
+impl Boundary {
+    /// The boundary of a linear mesh.
+    #[must_use]
+    pub fn new(mesh: &Mesh) -> Boundary {
+        let mut boundary = Boundary::default();
+        for (place, block) in mesh.blocks_of(2) {
+            for (element, corners) in block.elements(Order::LINEAR).enumerate() {
+                let face = BoundaryFace { cell: block.cell, block: place, element, entity: block.entity };
+                boundary.add(face, corners);
+            }
+        }
+        boundary
+    }
+
+    fn add(&mut self, face: BoundaryFace, corners: &[NodeId]) {
+        let index = self.faces.len();
+        for &[a, b] in face.cell.edges() {
+            let ends = sorted([corners[usize::from(a)], corners[usize::from(b)]]);
+            let edge = *self.by_ends.entry(ends).or_insert_with(|| {
+                self.edges.push(ends);
+                self.edge_faces.push(Vec::new());
+                self.edges.len() - 1
+            });
+            self.edge_faces[edge].push(index);
+        }
+        self.by_corners.insert(key(corners), index);
+        self.corners.push(corners.to_vec());
+        self.faces.push(face);
+    }
+
+    /// The face with these corners, in whatever order.
+    #[must_use]
+    pub fn face(&self, corners: &[NodeId]) -> Option<usize> {
+        self.by_corners.get(&key(corners)).copied()
+    }
+
+    /// The edge between two nodes.
+    #[must_use]
+    pub fn edge(&self, ends: [NodeId; 2]) -> Option<usize> {
+        self.by_ends.get(&sorted(ends)).copied()
+    }
+}
+
+fn sorted([a, b]: [NodeId; 2]) -> [NodeId; 2] {
+    if a < b { [a, b] } else { [b, a] }
+}
+
+/// Corners in canonical order: the same whichever corner and direction a file begins with.
+fn key(corners: &[NodeId]) -> Vec<NodeId> {
+    canonical(corners)[..corners.len()].iter().map(|&q| corners[usize::from(q)]).collect()
+}

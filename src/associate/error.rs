@@ -1,0 +1,43 @@
+//! Why a mesh could not be tied to its CAD.
+
+use glam::DVec3;
+
+/// Mesh and CAD do not belong together, or not as claimed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // the messages say it
+pub enum AssociateError {
+    /// CAD and mesh differ in unit.
+    #[error(
+        "mesh and CAD differ in size by a factor near {factor}: the mesh's box is {mesh:.6} across, the CAD's {cad:.6}; \
+         if the CAD is in another unit, give --cad-scale {factor} (or --cad-scale auto)"
+    )]
+    Scale { mesh: f64, cad: f64, factor: f64 },
+    /// CAD and mesh lie apart.
+    #[error(
+        "mesh and CAD lie in different places: the boxes' centres are {distance:.6} apart, the mesh is {mesh:.6} across; \
+         move one of them"
+    )]
+    Place { mesh: f64, distance: f64 },
+    /// A tag or number that means another place on this CAD.
+    #[error(
+        "{label} is tied to {entities}, but {count} of its points are not there: the farthest, node {node} at {at}, is \
+         {distance:.3e} away (limit {limit:.3e}). The numbers may belong to another CAD file; give a linkage file, or \
+         raise --max-offset if the mesh is this far off its CAD"
+    )]
+    Off { label: String, entities: String, count: usize, node: u64, at: DVec3, distance: f64, limit: f64 },
+    /// An edge between two surfaces with no CAD edge.
+    #[error(
+        "the mesh edge {a}-{b} lies between {first} and {second}, but no CAD edge of theirs holds it: tie it to a curve \
+         by a linkage file, or mesh both sides on one surface"
+    )]
+    NoCurve { a: u64, b: u64, first: String, second: String },
+    /// CAD geometry that cannot be asked.
+    #[error("{label}: {cause}")]
+    Group { label: String, cause: String },
+    /// Nothing to do.
+    #[error(
+        "nothing of the mesh is tied to the CAD: {surfaces} surface entities, none with the number of a CAD face \
+         (1 to {faces}); give a linkage file"
+    )]
+    Nothing { surfaces: usize, faces: usize },
+}

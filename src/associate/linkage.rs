@@ -1,0 +1,175 @@
+//! The claims of a MeshLink file.
+
+use std::path::{Path, PathBuf};
+
+use cad::{EntityId, Model, ReferenceError};
+use linkage_schema::{Entity, ModelLinks};
+use rustc_hash::FxHashMap;
+
+use super::{Boundary, Claimed, Claims};
+use crate::mesh::{Mesh, NodeId};
+
+/// Why a linkage file could not be used with this mesh and CAD. Every variant names the file and the place.
+#[derive(Debug, thiserror::Error)]
+pub enum LinkageError {
+    /// Not readable, or not MeshLink.
+    #[error(transparent)]
+    Read(#[from] linkage_schema::ReadError),
+    /// MeshLink with errors of its own.
+    #[error(transparent)]
+    Refused(#[from] linkage_schema::Refused),
+    /// It links no mesh.
+    #[error("{}: links nothing: it has no MeshModelReference", file.display())]
+    Empty {
+        /// The linkage file.
+        file: PathBuf,
+    },
+    /// A reference to nothing in the CAD.
+    #[error("{place}: {label} {source}")]
+    Reference {
+        /// File, line and column.
+        place: String,
+        /// The sheet, string or point.
+        label: String,
+        /// What is wrong with the reference.
+        source: ReferenceError,
+    },
+    /// A node number that the mesh lacks.
+    #[error("{place}: {label} refers to node {index}, but the mesh has no such node (its numbers go up to {last})")]
+    Node {
+        /// File, line and column.
+        place: String,
+        /// The sheet, string or point.
+        label: String,
+        /// The number in the linkage file.
+        index: u32,
+        /// The mesh's largest number.
+        last: u64,
+    },
+    /// A face that is no boundary face.
+    #[error("{place}: {label} has a face with the nodes {nodes:?}, which is no boundary face of the mesh")]
+    Face {
+        /// File, line and column.
+        place: String,
+        /// The sheet.
+        label: String,
+        /// The nodes, by number.
+        nodes: Vec<u32>,
+    },
+}
+
+/// Reads a linkage file and looks its references and node numbers up.
+///
+/// # Errors
+/// [`LinkageError`].
+pub fn read_linkage(path: &Path, mesh: &Mesh, boundary: &Boundary, model: &Model) -> Result<Claims, LinkageError> {
+    let document = linkage_schema::read_path(path)?.accept()?;
+    let resolution = linkage_schema::resolve(&document).accept(path)?;
+    if resolution.models.is_empty() {
+        return Err(LinkageError::Empty { file: path.to_owned() });
+    }
+    let numbers = mesh.node_tags.iter().zip(0..).filter_map(|(&tag, n)| Some((tag, NodeId::new(n).ok()?))).collect();
+    let reader = Reader { path, boundary, model, numbers };
+    let mut claims = Claims { trusted: names(&document, model.path()), ..Claims::default() };
+    for links in &resolution.models {
+        reader.model(links, &mut claims)?;
+    }
+    Ok(claims)
+}
+
+/// Whether every CAD file that the document names has the name of this one.
+fn names(document: &linkage_schema::Document, cad: &Path) -> bool {
+    // A path in the document may be another system's: compare what follows the last separator of either kind.
+    let name = |text: &str| text.rsplit(['/', '\\']).next().unwrap_or(text).to_owned();
+    let own = name(&cad.to_string_lossy());
+    !document.geometry_files.is_empty() && document.geometry_files.iter().all(|file| name(&file.filename) == own)
+}
+
+struct Reader<'a> {
+    path: &'a Path,
+    boundary: &'a Boundary,
+    model: &'a Model,
+    numbers: FxHashMap<u64, NodeId>,
+}
+
+impl Reader<'_> {
+    fn model(&self, links: &ModelLinks, claims: &mut Claims) -> Result<(), LinkageError> {
+        for sheet in &links.sheets {
+            for run in &sheet.faces {
+                let label = format!("sheet {:?}", sheet.name().unwrap_or(""));
+                let place = self.place(run.run.origin);
+                let faces = run.run.faces().map(|face| self.face(face, &place, &label));
+                let items = faces.collect::<Result<_, _>>()?;
+                let entities = self.entities(run.entities(), &place, &label)?;
+                push(&mut claims.sheets, Claimed { label, items, entities });
+            }
+        }
+        for string in &links.strings {
+            for run in &string.edges {
+                let label = format!("string {:?}", string.name().unwrap_or(""));
+                let place = self.place(run.run.origin);
+                let edges = run.run.edges().map(|[a, b]| {
+                    Ok::<_, LinkageError>([self.node(a, &place, &label)?, self.node(b, &place, &label)?])
+                });
+                let items = edges.collect::<Result<_, _>>()?;
+                let entities = self.entities(run.entities(), &place, &label)?;
+                push(&mut claims.strings, Claimed { label, items, entities });
+            }
+        }
+        for point in &links.points {
+            let place = self.place(point.run.origin);
+            let label = "point".to_owned();
+            let nodes = point.run.indices.iter().map(|&index| self.node(index, &place, &label));
+            let items = nodes.collect::<Result<_, _>>()?;
+            let entities = self.entities(point.entities(), &place, &label)?;
+            push(&mut claims.points, Claimed { label, items, entities });
+        }
+        Ok(())
+    }
+
+    fn place(&self, origin: linkage_schema::Origin) -> String {
+        match origin.position() {
+            Some(position) => format!("{}:{}:{}", self.path.display(), position.line, position.column),
+            None => self.path.display().to_string(),
+        }
+    }
+
+    fn node(&self, index: u32, place: &str, label: &str) -> Result<NodeId, LinkageError> {
+        self.numbers.get(&u64::from(index)).copied().ok_or_else(|| LinkageError::Node {
+            place: place.to_owned(),
+            label: label.to_owned(),
+            index,
+            last: self.numbers.keys().copied().max().unwrap_or(0),
+        })
+    }
+
+    fn face(&self, indices: &[u32], place: &str, label: &str) -> Result<usize, LinkageError> {
+        let nodes = indices.iter().map(|&index| self.node(index, place, label)).collect::<Result<Vec<_>, _>>()?;
+        self.boundary.face(&nodes).ok_or_else(|| LinkageError::Face {
+            place: place.to_owned(),
+            label: label.to_owned(),
+            nodes: indices.to_vec(),
+        })
+    }
+
+    fn entities(&self, entities: &[Entity], place: &str, label: &str) -> Result<Vec<EntityId>, LinkageError> {
+        let mut all = Vec::new();
+        for entity in entities {
+            let found = self.model.resolve(entity.reference).map_err(|source| LinkageError::Reference {
+                place: place.to_owned(),
+                label: label.to_owned(),
+                source,
+            })?;
+            all.extend(found);
+        }
+        Ok(all)
+    }
+}
+
+/// Appends a claim, or lengthens the last one of the same name on the same geometry.
+fn push<T>(claims: &mut Vec<Claimed<T>>, claim: Claimed<T>) {
+    match claims.last_mut() {
+        Some(last) if last.label == claim.label && last.entities == claim.entities => last.items.extend(claim.items),
+        _ => claims.push(claim),
+    }
+}

@@ -1,0 +1,114 @@
+//! Which CAD group each boundary point, edge and face of the mesh lies on.
+//!
+//! ```text
+//!  MeshLink sheets, strings, points ─┐
+//!                                    ├─ claims ── bind ──► surfaces, curves, hosts of the linear nodes
+//!  entity tags of the mesh file ─────┘            (held against the CAD: do the points lie there?)
+//! ```
+//!
+//! A number or tag (`face-3`, an entity tag) belongs to the CAD file that the linkage names or that the mesh was made on.
+//! With any other file it counts only where all points of the mesh entity lie on that CAD entity. Faces for which that
+//! fails are an error; an edge is then looked for among the CAD edges of the surfaces that meet in it, as the numbers of
+//! edges differ between STEP and IGES of the same shape.
+
+mod bind;
+mod boundary;
+mod claims;
+mod error;
+mod linkage;
+
+use glam::DVec3;
+
+use cad::Group;
+
+pub use bind::associate;
+pub use boundary::{Boundary, BoundaryFace};
+pub use claims::{Claimed, Claims};
+pub use error::AssociateError;
+pub use linkage::{LinkageError, read_linkage};
+
+/// A set of CAD faces that mesh faces lie on.
+#[derive(Debug)]
+pub struct Surface {
+    /// The set, ready for closest points.
+    pub group: Group,
+    /// What the user calls it: sheet name or entity, and its CAD references.
+    pub label: String,
+    /// The plane of the faces, where they are planes and lie in one.
+    pub plane: Option<Plane>,
+}
+
+/// A set of CAD edges that mesh edges lie on.
+#[derive(Debug)]
+pub struct Curve {
+    /// The set, ready for closest points.
+    pub group: Group,
+    /// What the user calls it.
+    pub label: String,
+}
+
+/// A plane by a point and a unit normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane {
+    /// A point of it.
+    pub point: DVec3,
+    /// Its unit normal.
+    pub normal: DVec3,
+}
+
+impl Plane {
+    /// The point of the plane nearest to `x`.
+    #[must_use]
+    pub fn closest(&self, x: DVec3) -> DVec3 {
+        x - self.normal * self.normal.dot(x - self.point)
+    }
+}
+
+/// What holds a boundary node or the inner nodes of a boundary edge or face: the lowest entity wins.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Host {
+    /// A node inside the volume.
+    #[default]
+    Free,
+    /// Inside a surface, by index in [`Association::surfaces`].
+    Surface(usize),
+    /// In an unlinked patch that is plane, by index in [`Association::planes`].
+    Plane(usize),
+    /// On a curve, by index in [`Association::curves`].
+    Curve(usize),
+    /// At this point of the CAD.
+    Vertex(DVec3),
+    /// Unlinked and not in a plane, or where an unlinked plane ends: stays where it is.
+    Straight,
+}
+
+/// The mesh tied to the CAD.
+#[derive(Debug, Default)]
+pub struct Association {
+    /// CAD faces with mesh faces on them.
+    pub surfaces: Vec<Surface>,
+    /// CAD edges with mesh edges on them.
+    pub curves: Vec<Curve>,
+    /// Planes of unlinked patches.
+    pub planes: Vec<Plane>,
+    /// Host of every linear node.
+    pub nodes: Vec<Host>,
+    /// Host of the inner nodes of every boundary face, by index in [`Boundary::faces`].
+    pub faces: Vec<Host>,
+    /// Host of the inner nodes of every boundary edge, by index in [`Boundary::edges`].
+    pub edges: Vec<Host>,
+    /// What a user should know and need not mend.
+    pub notes: Vec<String>,
+}
+
+impl Association {
+    /// The plane that holds a host's nodes, if one does.
+    #[must_use]
+    pub fn plane_of(&self, host: Host) -> Option<Plane> {
+        match host {
+            Host::Plane(plane) => Some(self.planes[plane]),
+            Host::Surface(surface) => self.surfaces[surface].plane,
+            _ => None,
+        }
+    }
+}
