@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::collections::BTreeMap;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -42,7 +43,10 @@ fn elements(mesh: &Mesh) -> Vec<(Cell, u64, Vec<usize>)> {
 /// What other programs find in files; `None`, said aloud, where no Python with Gmsh is at hand.
 fn reread(files: &[PathBuf]) -> Option<serde_json::Value> {
     let Ok(python) = std::env::var("SAGITTA_PYTHON") else {
-        eprintln!("!!! SAGITTA_PYTHON is not set: files are NOT read back by Gmsh, meshio and VTK, only by ourselves");
+        // Not by `eprintln!`, which the test harness would swallow.
+        let warning =
+            "!!! SAGITTA_PYTHON is not set: files are NOT read back by Gmsh, meshio and VTK, only by ourselves";
+        writeln!(std::io::stderr(), "{warning}").unwrap();
         return None;
     };
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/judge/reread.py");
