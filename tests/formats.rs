@@ -41,9 +41,9 @@ fn elements(mesh: &Mesh) -> Vec<(Cell, u64, Vec<usize>)> {
 }
 
 /// What other programs find in files; `None`, said aloud, where no Python with Gmsh is at hand.
+#[allow(clippy::explicit_write)] // the test harness would swallow what `eprintln!` says
 fn reread(files: &[PathBuf]) -> Option<serde_json::Value> {
     let Ok(python) = std::env::var("SAGITTA_PYTHON") else {
-        // Not by `eprintln!`, which the test harness would swallow.
         let warning =
             "!!! SAGITTA_PYTHON is not set: files are NOT read back by Gmsh, meshio and VTK, only by ourselves";
         writeln!(std::io::stderr(), "{warning}").unwrap();

@@ -89,6 +89,8 @@ impl<'a> Outline<'a> {
         }
         entities.extend(boxes.into_iter().map(|(key, bounds)| {
             let physical_tags = groups.get(&key).cloned().unwrap_or_default();
+            // An entity of an empty block has no box.
+            let bounds = if bounds[0][0] <= bounds[1][0] { bounds } else { [[0.0; 3]; 2] };
             Cow::Owned(Entity { key, bounds, physical_tags, boundary: Vec::new() })
         }));
         entities.sort_by_key(|entity| entity.key.dimension);
