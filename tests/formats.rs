@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::collections::BTreeMap;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -40,9 +41,12 @@ fn elements(mesh: &Mesh) -> Vec<(Cell, u64, Vec<usize>)> {
 }
 
 /// What other programs find in files; `None`, said aloud, where no Python with Gmsh is at hand.
+#[allow(clippy::explicit_write)] // the test harness would swallow what `eprintln!` says
 fn reread(files: &[PathBuf]) -> Option<serde_json::Value> {
     let Ok(python) = std::env::var("SAGITTA_PYTHON") else {
-        eprintln!("!!! SAGITTA_PYTHON is not set: files are NOT read back by Gmsh, meshio and VTK, only by ourselves");
+        let warning =
+            "!!! SAGITTA_PYTHON is not set: files are NOT read back by Gmsh, meshio and VTK, only by ourselves";
+        writeln!(std::io::stderr(), "{warning}").unwrap();
         return None;
     };
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/judge/reread.py");
@@ -261,4 +265,45 @@ fn elevated_meshes_are_read_by_other_programs() {
             assert!(close(&gmsh["volume"]) && gmsh["smallest_determinant"].as_f64().unwrap() > 0.0, "{name}: {gmsh}");
         }
     }
+}
+
+#[test]
+fn what_is_no_mesh_file_is_told() {
+    let dir = tempfile::tempdir().unwrap();
+    let refused = |name: &str, content: &[u8]| {
+        let path = dir.path().join(name);
+        std::fs::write(&path, content).unwrap();
+        let told = formats::read(&path).unwrap_err().to_string();
+        assert!(told.starts_with(path.to_str().unwrap()), "{told}");
+        told
+    };
+    assert!(refused("empty.msh", b"").contains("the file is empty"));
+    assert!(refused("part.msh", b"ISO-10303-21;\nHEADER;").contains("CAD, not a mesh"));
+    assert!(refused("grid.msh", b"\x89HDF\r\n\x1a\n\0\0").contains("HDF5"));
+    assert!(refused("noise.msh", &[0xff; 100]).contains("not a mesh file of a known format"));
+    assert!(
+        refused("old.msh", b"$MeshFormat\n4 0 8\n$EndMeshFormat\n")
+            .contains("old.msh, line 2: MSH version 4 is not read")
+    );
+    let missing = formats::read(&dir.path().join("missing.msh")).unwrap_err().to_string();
+    assert!(missing.contains("missing.msh: cannot read: No such file"), "{missing}");
+    assert!(formats::read(dir.path()).unwrap_err().to_string().contains("not a regular file"));
+}
+
+#[test]
+fn what_cannot_be_written_is_told_and_leaves_no_file() {
+    let dir = tempfile::tempdir().unwrap();
+    let mesh = sample("hexpyrtet_p1_msh41a.msh");
+    let refused = |name: &str, options: &WriteOptions| {
+        let told = formats::write(&dir.path().join(name), &mesh, options).unwrap_err().to_string();
+        assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 0, "{name}");
+        told
+    };
+    let plain = WriteOptions::default();
+    assert!(refused("mesh.stl", &plain).contains("name it .msh or .vtu"));
+    assert!(refused("mesh", &plain).contains("name it .msh or .vtu"));
+    assert!(refused("none/mesh.msh", &plain).contains("cannot create: No such file"));
+    let short = Field { name: "short".into(), support: Support::Elements, values: Values::Integer(vec![1, 2]) };
+    let options = WriteOptions { fields: &[short], ..plain };
+    assert!(refused("mesh.vtu", &options).contains("field \"short\" has 2 values for 122 elements"));
 }

@@ -252,6 +252,29 @@ mod tests {
     }
 
     #[test]
+    fn a_pyramid_as_hex_has_the_pyramids_shape() {
+        for order in Order::all() {
+            let p = order.get() as f64;
+            let at = |node: &[u8; 3]| glam::DVec3::from(node.map(f64::from)) / p;
+            let nodes = lattice(Cell::Pyramid, order);
+            let hex = FileOrder::Vtk
+                .slots(Cell::Hex, order)
+                .unwrap()
+                .iter()
+                .map(|&n| at(&lattice(Cell::Hex, order)[usize::from(n)]));
+            for (weights, chart) in pyramid_as_hex(order).iter().zip(hex) {
+                let sum: glam::DVec3 = weights.iter().zip(nodes).map(|(&w, node)| w * at(node)).sum();
+                let shrink = 1.0 - chart.z;
+                assert!(
+                    sum.distance(glam::dvec3(chart.x * shrink, chart.y * shrink, chart.z)) < 1e-13,
+                    "{order} {chart}"
+                );
+                assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-13, "{order} {chart}");
+            }
+        }
+    }
+
+    #[test]
     fn type_codes_are_those_of_the_judges_table() {
         let judge = judge();
         for cell in Cell::ALL.into_iter().filter(|&c| c != Cell::Point) {

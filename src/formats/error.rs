@@ -99,6 +99,8 @@ pub enum Fault {
     Truncated(&'static str),
     #[error("expected {what}, found {found:?}")]
     Unexpected { what: &'static str, found: String },
+    #[error("reading {what}: {found:?} is not a valid number here")]
+    Number { what: &'static str, found: String },
     #[error("{count} {what} do not fit into the {rest} bytes that follow: the file is cut off or damaged")]
     Count { what: &'static str, count: u64, rest: u64 },
     #[error("{what} are announced as {announced}, but there are {found}: the file is damaged")]

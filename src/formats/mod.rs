@@ -1,4 +1,8 @@
 //! Mesh files: one file or folder a format, found by content when read and by name when written.
+//!
+//! A format's reader takes a stream and its length and returns a [`Mesh`] or a [`Flaw`], a fault with its place; its
+//! writer takes a stream. Files, their names and what happens to them on failure are dealt with here. Node orders come
+//! from [`crate::element::order`], element numbers from [`crate::element::type_code`].
 
 mod error;
 mod field;

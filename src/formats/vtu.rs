@@ -5,6 +5,7 @@
 //! whose upper face is the apex. That is exact (the pyramid's functions are polynomials on the cube), but adds
 //! `(p + 1)^3` points a pyramid, and the Jacobian vanishes at the apex.
 
+use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
@@ -12,7 +13,7 @@ use super::field::{Field, Support, Values};
 use super::output::Unwritten;
 use crate::element::order::{FileOrder, pyramid_as_hex};
 use crate::element::{Cell, Order, type_code};
-use crate::mesh::{Block, Mesh};
+use crate::mesh::{Block, Entity, EntityKey, Mesh};
 
 /// Writes a mesh and fields on it; with `volume_only` without the cells below the mesh's top dimension, which
 /// some readers refuse in the same file.
@@ -106,10 +107,11 @@ impl Array<'_> {
 impl<'a> Grid<'a> {
     fn new(mesh: &'a Mesh, volume_only: bool) -> Grid<'a> {
         let top = mesh.blocks.iter().map(|b| b.cell.dimension()).max().unwrap_or(0);
+        let entities: HashMap<EntityKey, &Entity> = mesh.entities.iter().map(|e| (e.key, e)).collect();
         let wanted = mesh.blocks.iter().filter(|b| !volume_only || b.cell.dimension() == top);
         let part = |block: &'a Block| {
             let (vtk, shown) = Shown::new(block.cell, mesh.order);
-            Part { block, patch: patch(mesh, block), vtk, shown }
+            Part { block, patch: patch(&entities, block), vtk, shown }
         };
         let parts: Vec<Part> = wanted.map(part).collect();
         let cells = parts.iter().map(|part| part.block.tags.len()).sum();
@@ -280,8 +282,8 @@ impl<'a> Grid<'a> {
 }
 
 /// A block's first physical tag: its own (MSH 2.2) or that of its entity.
-fn patch(mesh: &Mesh, block: &Block) -> i32 {
-    let of_entity = || mesh.entities.iter().find(|e| e.key == block.entity)?.physical_tags.first();
+fn patch(entities: &HashMap<EntityKey, &Entity>, block: &Block) -> i32 {
+    let of_entity = || entities.get(&block.entity)?.physical_tags.first();
     block.physical_tags.first().or_else(of_entity).map_or(0, |tag| tag.saturating_abs())
 }
 

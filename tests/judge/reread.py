@@ -4,6 +4,7 @@
 usage: reread.py FILE...
 output: {FILE: {"gmsh": {...}, "meshio": {...}, "pyvista": {...}}}; a reader that failed gives {"error": text}.
 """
+import contextlib
 import json
 import sys
 
@@ -88,7 +89,8 @@ def main():
         found[path] = {}
         for name, read in (("gmsh", with_gmsh), ("meshio", with_meshio), ("pyvista", with_pyvista)):
             try:
-                found[path][name] = read(path)
+                with contextlib.redirect_stdout(sys.stderr):
+                    found[path][name] = read(path)
             except (Exception, SystemExit) as error:  # noqa: BLE001 - what the reader says is the result
                 found[path][name] = {"error": f"{type(error).__name__}: {error}"}
     json.dump(found, sys.stdout)

@@ -121,9 +121,8 @@ impl Draft {
         numbers: &[u64],
         nodes: &mut Vec<NodeId>,
     ) -> Result<(), Flaw> {
-        let Some((&first, _)) = numbers.split_first() else { return Ok(()) };
         let base = nodes.len();
-        nodes.resize(base + numbers.len(), self.node(source, first, "element", tag)?);
+        nodes.resize(base + numbers.len(), NodeId::default());
         for (&slot, &number) in kind.slots.iter().zip(numbers) {
             nodes[base + usize::from(slot)] = self.node(source, number, "element", tag)?;
         }

@@ -1,7 +1,7 @@
 //! How a mesh is laid out in an MSH 4.1 file: which entities, which node blocks, in which order.
 
 use std::borrow::Cow;
-use std::collections::{BTreeMap, BTreeSet, HashSet};
+use std::collections::{BTreeMap, HashSet};
 use std::ops::Range;
 
 use crate::element::Order;
@@ -89,6 +89,8 @@ impl<'a> Outline<'a> {
         }
         entities.extend(boxes.into_iter().map(|(key, bounds)| {
             let physical_tags = groups.get(&key).cloned().unwrap_or_default();
+            // An entity of an empty block has no box.
+            let bounds = if bounds[0][0] <= bounds[1][0] { bounds } else { [[0.0; 3]; 2] };
             Cow::Owned(Entity { key, bounds, physical_tags, boundary: Vec::new() })
         }));
         entities.sort_by_key(|entity| entity.key.dimension);
@@ -101,8 +103,12 @@ impl<'a> Outline<'a> {
 /// MSH 2.2 puts elements, not entities, into groups: where blocks of one entity differ in groups, or the tag is
 /// none that 4.1 allows, the later block moves to an entity of its own with a fresh tag.
 fn block_entities(mesh: &Mesh) -> (Vec<EntityKey>, BTreeMap<EntityKey, Vec<i32>>) {
-    let known: BTreeSet<EntityKey> = mesh.entities.iter().map(|e| e.key).collect();
-    let mut taken: BTreeSet<EntityKey> = known.iter().copied().chain(mesh.blocks.iter().map(|b| b.entity)).collect();
+    let known: HashSet<EntityKey> = mesh.entities.iter().map(|e| e.key).collect();
+    let mut last = [0; 4];
+    for key in known.iter().copied().chain(mesh.blocks.iter().map(|b| b.entity)) {
+        let largest = &mut last[usize::from(key.dimension)];
+        *largest = key.tag.max(*largest);
+    }
     let mut groups: BTreeMap<EntityKey, Vec<i32>> = BTreeMap::new();
     let mut moved: BTreeMap<(EntityKey, &[i32]), EntityKey> = BTreeMap::new();
     let mut keys = Vec::with_capacity(mesh.blocks.len());
@@ -115,10 +121,10 @@ fn block_entities(mesh: &Mesh) -> (Vec<EntityKey>, BTreeMap<EntityKey, Vec<i32>>
             continue;
         }
         let fresh = *moved.entry((key, &block.physical_tags)).or_insert_with(|| {
-            let last = taken.iter().filter(|k| k.dimension == key.dimension).map(|k| k.tag).max().unwrap_or(0);
-            EntityKey::new(key.dimension, last.max(0).saturating_add(1))
+            let largest = &mut last[usize::from(key.dimension)];
+            *largest = largest.saturating_add(1);
+            EntityKey::new(key.dimension, *largest)
         });
-        taken.insert(fresh);
         groups.insert(fresh, block.physical_tags.clone());
         keys.push(fresh);
     }

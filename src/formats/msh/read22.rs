@@ -1,20 +1,20 @@
 //! Sections of MSH 2.2.
 
 use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::BufRead;
 
 use super::draft::{Draft, ElementType, empty_block};
 use super::read41::{dimension, periodic_pair};
 use super::scanner::Scanner;
 use super::source::{Record, Source, Text};
-use crate::element::Cell;
 use crate::formats::error::{Fault, Flaw};
 use crate::mesh::{Block, EntityKey, NodeId, Periodic};
 
 /// A positive `int` as node or element number.
 fn number(source: &mut impl Source, what: &'static str) -> Result<u64, Flaw> {
     let value = source.int(what)?;
-    u64::try_from(value).map_err(|_| source.flaw(Fault::Unexpected { what, found: value.to_string() }))
+    u64::try_from(value).map_err(|_| source.flaw(Fault::Number { what, found: value.to_string() }))
 }
 
 /// The count that heads a section: a line of text in both encodings.
@@ -125,57 +125,76 @@ impl Elements<'_> {
         }
         self.nodes.clear();
         self.draft.push_element(source, head.kind, head.tag, &self.numbers, &mut self.nodes)?;
-        let cell = head.kind.cell;
-        let entity = EntityKey::new(cell.dimension() as u8, head.entity);
-        let mut physical = if head.physical == 0 { Vec::new() } else { vec![head.physical] };
-        let mut tag = head.tag;
-        if let Some((earlier, mut groups)) = self.take_repeated(cell, entity, head.physical) {
-            tag = earlier;
-            groups.append(&mut physical);
-            physical = groups;
+        if self.joins_last(head) {
+            if let Some(block) = self.draft.mesh.blocks.last_mut() {
+                block.tags.push(head.tag);
+                block.nodes.extend_from_slice(&self.nodes);
+            }
+            return Ok(());
         }
-        let blocks = &mut self.draft.mesh.blocks;
-        if !blocks.last().is_some_and(|b| b.cell == cell && b.entity == entity && b.physical_tags == physical) {
-            let mut block = empty_block(cell, entity);
-            block.physical_tags = physical;
-            blocks.push(block);
+        let entity = EntityKey::new(head.kind.cell.dimension() as u8, head.entity);
+        let mut block = empty_block(head.kind.cell, entity);
+        block.tags.push(self.take_repeated(head, &mut block.physical_tags).unwrap_or(head.tag));
+        block.nodes.extend_from_slice(&self.nodes);
+        if head.physical != 0 {
+            block.physical_tags.push(head.physical);
         }
-        if let Some(block) = blocks.last_mut() {
-            block.tags.push(tag);
-            block.nodes.extend_from_slice(&self.nodes);
+        match self.draft.mesh.blocks.last_mut() {
+            Some(last) if alike(last, &block) && last.physical_tags == block.physical_tags => {
+                last.tags.append(&mut block.tags);
+                last.nodes.append(&mut block.nodes);
+            }
+            _ => self.draft.mesh.blocks.push(block),
         }
         Ok(())
     }
 
-    /// Takes back the last element where the present one is the same in another physical group.
-    fn take_repeated(&mut self, cell: Cell, entity: EntityKey, physical: i32) -> Option<(u64, Vec<i32>)> {
+    /// Whether an element goes on with the last block.
+    fn joins_last(&self, head: &Head) -> bool {
+        self.draft.mesh.blocks.last().is_some_and(|last| {
+            let same_group = match last.physical_tags[..] {
+                [] => head.physical == 0,
+                [group] => head.physical == group,
+                _ => false,
+            };
+            last.cell == head.kind.cell && last.entity.tag == head.entity && same_group
+        })
+    }
+
+    /// Takes back the last element where the present one is the same in another physical group: its number, and
+    /// the groups it was in.
+    fn take_repeated(&mut self, head: &Head, groups: &mut Vec<i32>) -> Option<u64> {
         let blocks = &mut self.draft.mesh.blocks;
         let last = blocks.last_mut()?;
-        let same = last.cell == cell && last.entity == entity && last.nodes.ends_with(&self.nodes);
-        if !same || physical == 0 || last.physical_tags.is_empty() || last.physical_tags.contains(&physical) {
+        let same = last.cell == head.kind.cell && last.entity.tag == head.entity && last.nodes.ends_with(&self.nodes);
+        if !same || head.physical == 0 || last.physical_tags.is_empty() || last.physical_tags.contains(&head.physical) {
             return None;
         }
-        let groups = last.physical_tags.clone();
+        groups.extend_from_slice(&last.physical_tags);
         let tag = last.tags.pop()?;
         last.nodes.truncate(last.nodes.len() - self.nodes.len());
         if last.tags.is_empty() {
             blocks.pop();
         }
-        Some((tag, groups))
+        Some(tag)
     }
 
     /// Unites blocks that hold the same elements in different physical groups.
     fn finish(self) {
-        let mut firsts: HashMap<(Cell, EntityKey), Vec<usize>> = HashMap::new();
+        let mut rivals: HashMap<u64, Vec<usize>> = HashMap::new();
         let mut united: Vec<Block> = Vec::new();
         for block in self.draft.mesh.blocks.drain(..) {
-            let rivals = firsts.entry((block.cell, block.entity)).or_default();
-            let same = rivals.iter().copied().find(|&n| united[n].nodes == block.nodes);
-            match same {
-                Some(n) if !block.physical_tags.iter().any(|tag| united[n].physical_tags.contains(tag)) => {
-                    united[n].physical_tags.extend(block.physical_tags);
-                }
-                _ => {
+            let mut hasher = DefaultHasher::new();
+            (block.cell, block.entity, &block.nodes).hash(&mut hasher);
+            let rivals = rivals.entry(hasher.finish()).or_default();
+            let repeats = |n: &usize| {
+                let first: &Block = &united[*n];
+                let again = block.physical_tags.iter().any(|tag| first.physical_tags.contains(tag));
+                alike(first, &block) && first.nodes == block.nodes && !again
+            };
+            match rivals.iter().copied().find(repeats) {
+                Some(n) => united[n].physical_tags.extend(block.physical_tags),
+                None => {
                     rivals.push(united.len());
                     united.push(block);
                 }
@@ -183,6 +202,11 @@ impl Elements<'_> {
         }
         self.draft.mesh.blocks = united;
     }
+}
+
+/// Whether two blocks are of the same cell on the same entity.
+fn alike(a: &Block, b: &Block) -> bool {
+    a.cell == b.cell && a.entity == b.entity
 }
 
 /// `$Periodic`, which is text in both encodings.

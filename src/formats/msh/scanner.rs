@@ -122,7 +122,7 @@ impl<R: BufRead> Scanner<R> {
             Some(value) => Ok(value),
             None => {
                 let found: String = String::from_utf8_lossy(&self.word).chars().take(40).collect();
-                Err(self.flaw(Fault::Unexpected { what, found }))
+                Err(self.flaw(Fault::Number { what, found }))
             }
         }
     }

@@ -83,9 +83,19 @@ fn each_fault_is_told_with_its_place() {
             Place::Line(16),
             "4000000000 elements do not fit into the",
         ),
-        ("negative count", with("2 7 0 3\n", "2 7 0 -3\n"), Place::Line(6), "expected nodes, found \"-3\""),
-        ("not a number", with("1 0 0\n", "1 O 0\n"), Place::Line(11), "expected a node's coordinates, found \"O\""),
-        ("not text", with("1 0 0\n", "1 \u{e4} 0\n"), Place::Line(11), "expected a node's coordinates"),
+        (
+            "negative count",
+            with("2 7 0 3\n", "2 7 0 -3\n"),
+            Place::Line(6),
+            "reading nodes: \"-3\" is not a valid number here",
+        ),
+        (
+            "not a number",
+            with("1 0 0\n", "1 O 0\n"),
+            Place::Line(11),
+            "reading a node's coordinates: \"O\" is not a valid number",
+        ),
+        ("not text", with("1 0 0\n", "1 \u{e4} 0\n"), Place::Line(11), "reading a node's coordinates"),
         ("NaN", with("1 0 0\n", "1 nan 0\n"), Place::Line(11), "node 30: a coordinate or parameter is not a finite"),
         (
             "infinite",
@@ -146,7 +156,7 @@ fn each_fault_is_told_with_its_place() {
             "2.2 negative node",
             "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n-1 0 0 0\n".into(),
             Place::Line(6),
-            "expected a node number, found \"-1\"",
+            "reading a node number: \"-1\"",
         ),
         (
             "2.2 tags",

@@ -1,10 +1,12 @@
 //! MSH 2.2, from a mesh.
 
+use std::collections::HashMap;
+
 use super::sink::Sink;
 use super::write41::slots;
 use crate::element::type_code;
 use crate::formats::output::Unwritten;
-use crate::mesh::{Block, Mesh};
+use crate::mesh::{Block, Entity, EntityKey, Mesh};
 
 /// Writes all sections after `$PhysicalNames`.
 pub(super) fn write(sink: &mut impl Sink, mesh: &Mesh) -> Result<(), Unwritten> {
@@ -32,8 +34,8 @@ fn nodes(sink: &mut impl Sink, mesh: &Mesh) -> Result<(), Unwritten> {
 }
 
 /// The physical groups of a block's elements: 0 where there is none, else one or several positive tags.
-fn groups(mesh: &Mesh, block: &Block) -> Vec<i32> {
-    let of_entity = || mesh.entities.iter().find(|e| e.key == block.entity).map(|e| &e.physical_tags);
+fn groups(entities: &HashMap<EntityKey, &Entity>, block: &Block) -> Vec<i32> {
+    let of_entity = || entities.get(&block.entity).map(|e| &e.physical_tags);
     let tags = if block.physical_tags.is_empty() { of_entity() } else { Some(&block.physical_tags) };
     match tags {
         // The sign tells the group's orientation, for which this version has no place.
@@ -44,7 +46,8 @@ fn groups(mesh: &Mesh, block: &Block) -> Vec<i32> {
 
 /// An element in several groups stands once for each: first under its own number, then under new ones.
 fn elements<S: Sink>(sink: &mut S, mesh: &Mesh) -> Result<(), Unwritten> {
-    let groups: Vec<Vec<i32>> = mesh.blocks.iter().map(|block| groups(mesh, block)).collect();
+    let entities: HashMap<EntityKey, &Entity> = mesh.entities.iter().map(|e| (e.key, e)).collect();
+    let groups: Vec<Vec<i32>> = mesh.blocks.iter().map(|block| groups(&entities, block)).collect();
     let count: usize = mesh.blocks.iter().zip(&groups).map(|(block, groups)| block.tags.len() * groups.len()).sum();
     let mut last = mesh.blocks.iter().flat_map(|b| &b.tags).copied().max().unwrap_or(0);
     sink.open("Elements")?;
