@@ -162,7 +162,7 @@ impl Builder {
             return Ok(());
         }
         let seen = canonical(corners);
-        let mut key = [NodeId::MAX; 4];
+        let mut key = [NodeId::NONE; 4];
         for (slot, &q) in key.iter_mut().zip(&seen[..corners.len()]) {
             *slot = corners[usize::from(q)];
         }

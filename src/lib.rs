@@ -7,5 +7,6 @@ pub mod elevate;
 pub mod formats;
 pub mod mesh;
 pub mod perturb;
+pub mod project;
 pub mod quality;
 pub mod smooth;

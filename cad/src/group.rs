@@ -57,6 +57,12 @@ pub struct Group {
     pub(crate) diagonal: f64,
 }
 
+impl std::fmt::Debug for Group {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Group").field("entities", &self.entities).finish_non_exhaustive()
+    }
+}
+
 impl Group {
     /// Group of faces; their boundary edges are taken along, as ends of trimmed faces. Order and repetition of `ids` do not matter.
     ///

@@ -6,6 +6,7 @@
 pub mod basis;
 pub mod bernstein;
 mod cell;
+mod extension;
 mod lattice;
 pub mod order;
 mod orientation;
@@ -14,6 +15,7 @@ mod subdivision;
 pub mod type_code;
 
 pub use cell::{Cell, Face, Order, OrderOutOfRange};
+pub use extension::interior_extension;
 pub use lattice::{face_lattice, lattice};
 pub use orientation::{canonical, interior_count, interior_slots, interior_start};
 pub use samples::Samples;

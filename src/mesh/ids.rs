@@ -18,9 +18,6 @@ macro_rules! id {
         pub struct $name(u32);
 
         impl $name {
-            /// The largest id; used as filler beyond the corners of a key.
-            pub(crate) const MAX: Self = Self(u32::MAX);
-
             /// The id of the item at a place in its list.
             ///
             /// # Errors
@@ -46,3 +43,8 @@ id!(
     /// An element of the top dimension, counted over all blocks in file order.
     ElementId, "elements"
 );
+
+impl NodeId {
+    /// Filler beyond the corners of a key: no node has it, as a mesh of that many nodes has no room for elements.
+    pub(crate) const NONE: NodeId = NodeId(u32::MAX);
+}

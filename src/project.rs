@@ -1,0 +1,266 @@
+//! New boundary nodes go to their CAD group; and the constraint that keeps them there while the mesh is smoothed.
+//!
+//! A node's wish is first spread so that the wall polynomial follows the CAD well: the inner nodes of an edge go to equal
+//! fractions of the length of the projected edge, those of a face to the smoothest extension of its edges' displacements. Projecting
+//! the equispaced nodes of the chord instead bunches them where the wall leans away from the chord: at P4 the wall is then
+//! 2.6 times as far from the CAD.
+
+use cad::{EntityId, Evaluation, Foot, Group};
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::associate::{Association, Boundary, Host};
+use crate::element::{Cell, Order, interior_count, interior_extension, interior_start};
+use crate::elevate::Elevated;
+use crate::mesh::NodeId;
+use crate::smooth::{Constraint, Freedom};
+
+/// Places between two nodes of an edge at which its projection is measured.
+const STATIONS: usize = 4;
+/// A projected edge this much longer than its chord does not run beside it: its nodes are not spread.
+const LONGEST: f64 = 2.0;
+
+/// Hosts and places of all nodes after projection.
+#[derive(Clone, Debug)]
+pub struct Projected {
+    /// Host of every node of the elevated mesh.
+    pub hosts: Vec<Host>,
+    /// Displacement of every boundary node from its straight place to its CAD group; zero for the others.
+    pub displacement: Vec<DVec3>,
+    /// How many closest points were asked for.
+    pub projections: usize,
+    /// How many of them are not proven to be the closest.
+    pub unproven: usize,
+}
+
+/// Projects the boundary nodes of an elevated mesh.
+///
+/// With `freeze_linear` the linear nodes stay where they are, on the CAD or not.
+#[must_use]
+pub fn project(elevated: &Elevated, boundary: &Boundary, association: &Association, freeze_linear: bool) -> Projected {
+    let nodes = elevated.mesh.points.len();
+    let mut hosts = association.nodes.clone();
+    hosts.resize(nodes, Host::Free);
+    let mut projector = Projector {
+        elevated,
+        association,
+        result: Projected { hosts, displacement: vec![DVec3::ZERO; nodes], projections: 0, unproven: 0 },
+    };
+    if !freeze_linear {
+        projector.linear_nodes();
+    }
+    projector.edges(boundary);
+    projector.faces(boundary);
+    projector.result
+}
+
+struct Projector<'a> {
+    elevated: &'a Elevated,
+    association: &'a Association,
+    result: Projected,
+}
+
+impl Projector<'_> {
+    fn straight(&self, node: NodeId) -> DVec3 {
+        self.elevated.mesh.points[node.index()]
+    }
+
+    /// The feet of wishes on a host's group; planes and fixed places need no CAD.
+    fn feet(&mut self, host: Host, wishes: &[DVec3]) -> Vec<DVec3> {
+        match (host, self.association.plane_of(host), group_of(self.association, host)) {
+            (_, Some(plane), _) => wishes.iter().map(|&x| plane.closest(x)).collect(),
+            (Host::Vertex(place), ..) => vec![place; wishes.len()],
+            (_, _, Some(group)) => {
+                let feet: Vec<Foot> = wishes.iter().map(|&x| group.closest(x, None)).collect();
+                self.result.projections += feet.len();
+                self.result.unproven += feet.iter().filter(|f| !f.proven).count();
+                feet.iter().map(|f| f.point).collect()
+            }
+            _ => wishes.to_vec(),
+        }
+    }
+
+    fn linear_nodes(&mut self) {
+        let boundary: Vec<usize> =
+            (0..self.elevated.linear_nodes).filter(|&n| self.association.nodes[n] != Host::Free).collect();
+        for n in boundary {
+            let x = self.elevated.mesh.points[n];
+            let place = self.feet(self.association.nodes[n], &[x])[0];
+            self.result.displacement[n] = place - x;
+        }
+    }
+
+    fn edges(&mut self, boundary: &Boundary) {
+        let order = self.elevated.mesh.order;
+        let inner = interior_count(Cell::Line, order);
+        let carriers = &self.elevated.carriers[Cell::Line as usize];
+        let known: rustc_hash::FxHashMap<[NodeId; 2], NodeId> =
+            carriers.iter().map(|(ends, first)| ([ends[0], ends[1]], first)).collect();
+        for (edge, &ends) in boundary.edges.iter().enumerate() {
+            let (host, Some(&first)) = (self.association.edges[edge], known.get(&ends)) else { continue };
+            let places = self.spread(host, ends, order);
+            for (k, place) in (0..inner).zip(places) {
+                let node = first.index() + k;
+                self.result.hosts[node] = host;
+                self.result.displacement[node] = place - self.elevated.mesh.points[node];
+            }
+        }
+    }
+
+    /// Places of an edge's inner nodes: on the CAD, at equal fractions of the projected edge's length.
+    fn spread(&mut self, host: Host, ends: [NodeId; 2], order: Order) -> Vec<DVec3> {
+        let p = order.get();
+        let [a, b] = ends.map(|n| self.straight(n) + self.result.displacement[n.index()]);
+        let at = |s: f64| a.lerp(b, s);
+        let even: Vec<f64> = (1..p).map(|k| k as f64 / p as f64).collect();
+        let chord = |shares: &[f64]| shares.iter().map(|&s| at(s)).collect::<Vec<_>>();
+        if group_of(self.association, host).is_none() || self.association.plane_of(host).is_some() {
+            return self.feet(host, &chord(&even));
+        }
+        let stations: Vec<f64> = (1..p * STATIONS).map(|k| k as f64 / (p * STATIONS) as f64).collect();
+        let feet = self.feet(host, &chord(&stations));
+        let shares = equal_lengths(a, b, &stations, &feet, p).unwrap_or(even);
+        self.feet(host, &chord(&shares))
+    }
+
+    fn faces(&mut self, boundary: &Boundary) {
+        let order = self.elevated.mesh.order;
+        for (index, face) in boundary.faces.iter().enumerate() {
+            let block = &self.elevated.mesh.blocks[face.block];
+            let stride = block.stride(order);
+            let nodes = &block.nodes[face.element * stride..(face.element + 1) * stride];
+            let (rim, inner) = nodes.split_at(interior_start(face.cell, order));
+            let host = self.association.faces[index];
+            if inner.is_empty() {
+                continue;
+            }
+            let extension = interior_extension(face.cell, order);
+            let wishes: Vec<DVec3> = inner
+                .iter()
+                .zip(extension.chunks_exact(rim.len()))
+                .map(|(&node, weights)| {
+                    let moved: DVec3 =
+                        rim.iter().zip(weights).map(|(n, &w)| self.result.displacement[n.index()] * w).sum();
+                    self.straight(node) + moved
+                })
+                .collect();
+            for (&node, place) in inner.iter().zip(self.feet(host, &wishes)) {
+                self.result.hosts[node.index()] = host;
+                self.result.displacement[node.index()] = place - self.elevated.mesh.points[node.index()];
+            }
+        }
+    }
+}
+
+/// Chord shares whose feet divide the projected edge into `p` pieces of equal length; `None` where the feet do not run
+/// along the chord from `a` to `b`.
+fn equal_lengths(a: DVec3, b: DVec3, stations: &[f64], feet: &[DVec3], p: usize) -> Option<Vec<f64>> {
+    let mut lengths = vec![0.0];
+    let mut shares = vec![0.0];
+    let mut last = a;
+    for (&foot, &share) in feet.iter().chain([&b]).zip(stations.iter().chain([&1.0])) {
+        lengths.push(lengths.last()? + last.distance(foot));
+        shares.push(share);
+        if (foot - last).dot(b - a) <= 0.0 {
+            return None;
+        }
+        last = foot;
+    }
+    let total = *lengths.last()?;
+    if total > LONGEST * a.distance(b) {
+        return None;
+    }
+    (1..p).map(|k| inverted(&lengths, &shares, total * k as f64 / p as f64)).collect()
+}
+
+/// The share at which a rising table of lengths reaches `length`: the cubic through the four nearest entries.
+fn inverted(lengths: &[f64], shares: &[f64], length: f64) -> Option<f64> {
+    let above = lengths.partition_point(|&l| l < length);
+    let first = above.saturating_sub(2).min(lengths.len().checked_sub(4)?);
+    let (x, y) = (&lengths[first..first + 4], &shares[first..first + 4]);
+    let mut share = 0.0;
+    for i in 0..4 {
+        let weight: f64 = (0..4).filter(|&j| j != i).map(|j| (length - x[j]) / (x[i] - x[j])).product();
+        share += weight * y[i];
+    }
+    Some(share)
+}
+
+fn group_of(association: &Association, host: Host) -> Option<&Group> {
+    match host {
+        Host::Surface(surface) => Some(&association.surfaces[surface].group),
+        Host::Curve(curve) => Some(&association.curves[curve].group),
+        _ => None,
+    }
+}
+
+/// Keeps boundary nodes on their hosts.
+pub struct CadConstraint<'a> {
+    association: &'a Association,
+    hosts: &'a [Host],
+    linear_nodes: usize,
+    freeze_walls: bool,
+    freeze_linear: bool,
+}
+
+impl<'a> CadConstraint<'a> {
+    /// The constraint of the given hosts.
+    ///
+    /// Linear nodes on the boundary are held; with `freeze_linear` all linear nodes are. With `freeze_walls` nodes on
+    /// curves and curved surfaces are held; nodes in planes move all the same.
+    #[must_use]
+    pub fn new(
+        association: &'a Association,
+        projected: &'a Projected,
+        linear_nodes: usize,
+        freeze_walls: bool,
+        freeze_linear: bool,
+    ) -> CadConstraint<'a> {
+        CadConstraint { association, hosts: &projected.hosts, linear_nodes, freeze_walls, freeze_linear }
+    }
+
+    fn foot(&self, host: Host, x: DVec3) -> Option<Foot> {
+        group_of(self.association, host).map(|group| group.closest(x, None))
+    }
+}
+
+impl Constraint for CadConstraint<'_> {
+    fn freedom(&self, node: NodeId, at: DVec3) -> Freedom {
+        let host = self.hosts[node.index()];
+        if node.index() < self.linear_nodes && (self.freeze_linear || host != Host::Free) {
+            return Freedom::Fixed;
+        }
+        if host == Host::Free {
+            return Freedom::Space;
+        }
+        if let Some(plane) = self.association.plane_of(host) {
+            return Freedom::Plane(plane.normal);
+        }
+        if self.freeze_walls {
+            return Freedom::Fixed;
+        }
+        let (Some(foot), Some(group)) = (self.foot(host, at), group_of(self.association, host)) else {
+            return Freedom::Fixed;
+        };
+        // A foot on a rim has the parameters of the rim's own curve on its face, so that it has a normal as well.
+        match group.evaluate(foot.entity, foot.parameters) {
+            Some(Evaluation::Surface(point)) if matches!(foot.entity, EntityId::Face(_)) => {
+                point.normal.map_or(Freedom::Fixed, Freedom::Plane)
+            }
+            Some(Evaluation::Curve(point)) => point.tangent.map_or(Freedom::Fixed, Freedom::Line),
+            _ => Freedom::Fixed,
+        }
+    }
+
+    fn restrict(&self, node: NodeId, from: DVec3, wish: DVec3) -> DVec3 {
+        let host = self.hosts[node.index()];
+        if let Some(plane) = self.association.plane_of(host) {
+            return plane.closest(wish);
+        }
+        match host {
+            Host::Surface(_) | Host::Curve(_) => self.foot(host, wish).map_or(from, |foot| foot.point),
+            Host::Free => wish,
+            Host::Plane(_) | Host::Vertex(_) | Host::Straight => from,
+        }
+    }
+}
