@@ -15,7 +15,7 @@ use crate::foot::{End, Foot};
 use crate::group::{Group, Member};
 use crate::ids::{EdgeId, EntityId, FaceId, VertexId};
 use crate::leaf::{EdgeGeometry, EdgeLeaf, FaceGeometry, FaceLeaf};
-use crate::newton::{self, Local};
+use crate::newton::{self, Local, ROUNDING};
 use crate::tolerance::{CUT_BUDGET, ORTHOGONAL, POINT, TIE};
 use glam::DVec3;
 
@@ -241,7 +241,7 @@ fn tangential(r: DVec3, d: DVec3) -> f64 {
     if length > 0.0 { (r.dot(d) / length).abs() } else { 0.0 }
 }
 
-/// Newton's last step on OCCT's own surface, taken only if OCCT finds it nearer.
+/// Newton's last step on OCCT's own surface, taken only if it makes the residual smaller.
 fn polish_surface(face: &FaceGeometry, leaf: &FaceLeaf, x: DVec3, [u, v]: [f64; 2]) -> ([f64; 2], Jet) {
     let jet = surface_d2(&face.handle, u, v);
     let inside = |t: f64, range: [f64; 2]| t > range[0] && t < range[1];
@@ -261,7 +261,10 @@ fn polish_surface(face: &FaceGeometry, leaf: &FaceLeaf, x: DVec3, [u, v]: [f64; 
         return ([u, v], jet);
     }
     let polished = surface_d2(&face.handle, next[0], next[1]);
-    if polished[0].distance_squared(x) < r.length_squared() { (next, polished) } else { ([u, v], jet) }
+    let before = tangential(r, jet[1]).max(tangential(r, jet[2]));
+    let s = polished[0] - x;
+    let after = tangential(s, polished[1]).max(tangential(s, polished[2]));
+    if after < before && s.length_squared() <= r.length_squared() * ROUNDING { (next, polished) } else { ([u, v], jet) }
 }
 
 fn polish_curve(edge: &EdgeGeometry, x: DVec3, t: f64) -> (f64, [DVec3; 3]) {
@@ -269,7 +272,9 @@ fn polish_curve(edge: &EdgeGeometry, x: DVec3, t: f64) -> (f64, [DVec3; 3]) {
     let r = jet[0] - x;
     let next = (t - r.dot(jet[1]) / (jet[1].length_squared() + r.dot(jet[2]))).clamp(edge.range[0], edge.range[1]);
     let polished = curve_d2(&edge.handle, next);
-    if polished[0].distance_squared(x) < r.length_squared() { (next, polished) } else { (t, jet) }
+    let s = polished[0] - x;
+    let better = tangential(s, polished[1]) < tangential(r, jet[1]);
+    if better && s.length_squared() <= r.length_squared() * ROUNDING { (next, polished) } else { (t, jet) }
 }
 
 impl FaceGeometry {
