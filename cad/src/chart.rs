@@ -41,6 +41,12 @@ impl Rect {
         [u.clamp(self.u[0], self.u[1]), v.clamp(self.v[0], self.v[1])]
     }
 
+    /// Four parts that meet at parameters inside.
+    pub(crate) fn quarters(&self, [u, v]: [f64; 2]) -> [Self; 4] {
+        let (us, vs) = ([[self.u[0], u], [u, self.u[1]]], [[self.v[0], v], [v, self.v[1]]]);
+        [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(i, j)| Self { u: us[i], v: vs[j] })
+    }
+
     /// Two halves, cut across direction 0 (u) or 1 (v).
     pub(crate) fn halves(&self, direction: usize) -> [Self; 2] {
         let [u, v] = self.center();

@@ -31,6 +31,7 @@ mod payload;
 mod reader;
 mod reference;
 mod search;
+mod slab;
 pub mod tolerance;
 mod trim;
 

@@ -8,7 +8,7 @@
 //! The foot on a trimmed face is a minimum inside the trim or a point of a boundary edge, and the edges are leaves of the same tree.
 
 use crate::certificate::Certificate;
-use crate::chart::{Jet, surface_d2};
+use crate::chart::{Jet, Rect, surface_d2};
 use crate::closed_form;
 use crate::curve::curve_d2;
 use crate::foot::{End, Foot};
@@ -106,6 +106,9 @@ impl Search<'_> {
     }
 
     fn visit_face(&mut self, index: usize, face: &FaceGeometry, leaf: &FaceLeaf, start: Option<[f64; 2]>) {
+        if leaf.slab.distance_squared(self.x) > self.bound() {
+            return;
+        }
         if let Some(local) = closed_form::nearest(&face.chart, &leaf.rect, self.x) {
             return self.offer_on_face(index, face, leaf, local);
         }
@@ -113,21 +116,35 @@ impl Search<'_> {
         let local = newton::on_surface(&face.chart, &leaf.rect, self.x, start.unwrap_or(leaf.rect.center()));
         self.offer_on_face(index, face, leaf, local);
         if !self.is_decided(leaf.certificate.as_ref()) {
-            self.cut_face(index, face, leaf);
+            self.cut_face(index, face, leaf, local);
         }
     }
 
+    /// Whether no point of `rect` is nearer than the foot so far, or than its own `local` minimum: its hull is beyond a plane there.
+    fn is_beyond(&self, face: &FaceGeometry, rect: Rect, local: Local) -> bool {
+        let Some(best) = self.best else { return false };
+        let p = face.chart.d2(local.parameters[0], local.parameters[1])[0];
+        let gain = local.distance_squared.sqrt() - best.distance;
+        face.chart.hull(rect).is_beyond(self.x, p, gain.max(0.0) + self.tie())
+    }
+
     /// Cuts a leaf until each part is too far away, or has one minimum only, or is a point.
-    fn cut_face(&mut self, index: usize, face: &FaceGeometry, leaf: &FaceLeaf) {
-        let mut parts = Vec::from(leaf.rect.halves(leaf.direction(&face.chart)));
+    fn cut_face(&mut self, index: usize, face: &FaceGeometry, leaf: &FaceLeaf, local: Local) {
+        let mut parts = Vec::new();
+        self.cut_part(face, leaf, local, &mut parts);
         while let Some(rect) = parts.pop() {
-            let part = FaceLeaf::new(&face.chart, rect, leaf.crossed);
-            if part.bounds.distance_squared(self.x) > self.bound() {
+            let hull = face.chart.hull(rect);
+            if hull.bounds().distance_squared(self.x) > self.bound() {
                 continue;
             }
             let local = newton::on_surface(&face.chart, &rect, self.x, rect.center());
             self.offer_on_face(index, face, leaf, local);
-            if self.is_decided(part.certificate.as_ref()) || part.bounds.diagonal() < POINT * self.group.diagonal {
+            if self.is_beyond(face, rect, local) {
+                continue;
+            }
+            let part = FaceLeaf::new(&face.chart, rect, leaf.crossed);
+            let far = part.slab.distance_squared(self.x) > self.bound();
+            if far || self.is_decided(part.certificate.as_ref()) || part.bounds.diagonal() < POINT * self.group.diagonal {
                 continue;
             }
             if self.budget == 0 {
@@ -135,17 +152,33 @@ impl Search<'_> {
                 return;
             }
             self.budget -= 1;
-            let mut halves = rect.halves(part.direction(&face.chart)).map(|half| (face.chart.hull(half).bounds().distance_squared(self.x), half));
-            halves.sort_by(|a, b| b.0.total_cmp(&a.0));
-            parts.extend(halves.map(|(_, half)| half));
+            self.cut_part(face, &part, local, &mut parts);
         }
     }
 
+    /// Pushes the parts of a leaf, nearest last: four around a foot inside, else two halves.
+    fn cut_part(&self, face: &FaceGeometry, part: &FaceLeaf, local: Local, parts: &mut Vec<Rect>) {
+        let ([u, v], [du, dv]) = (local.parameters, part.rect.size());
+        let inside = |t: f64, range: [f64; 2], size: f64| t > range[0] + 0.01 * size && t < range[1] - 0.01 * size;
+        if inside(u, part.rect.u, du) && inside(v, part.rect.v, dv) {
+            parts.extend(part.rect.quarters([u, v]));
+            return;
+        }
+        let distance = |rect: Rect| face.chart.hull(rect).bounds().distance_squared(self.x);
+        let mut halves = part.rect.halves(part.direction(&face.chart)).map(|half| (distance(half), half));
+        halves.sort_by(|a, b| b.0.total_cmp(&a.0));
+        parts.extend(halves.map(|(_, half)| half));
+    }
+
     fn visit_edge(&mut self, index: usize, edge: &EdgeGeometry, leaf: &EdgeLeaf) {
+        if leaf.slab.distance_squared(self.x) > self.bound() {
+            return;
+        }
         self.proven &= leaf.sound;
-        let mut parts: Vec<EdgeLeaf> = vec![leaf.clone()];
-        while let Some(part) = parts.pop() {
-            if part.bounds.distance_squared(self.x) > self.bound() {
+        let mut parts: Vec<EdgeLeaf> = Vec::new();
+        let mut next = Some(leaf.clone());
+        while let Some(part) = next.take().or_else(|| parts.pop()) {
+            if part.slab.distance_squared(self.x) > self.bound() {
                 continue;
             }
             let [a, b] = part.range;

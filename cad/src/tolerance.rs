@@ -23,7 +23,7 @@ pub const CUT_BUDGET: usize = 400;
 pub const LEAF_TURN: f64 = 0.35;
 
 /// Levels of cutting when a model is built.
-pub const LEAF_DEPTH: u32 = 12;
+pub const LEAF_DEPTH: u32 = 8;
 
 /// Levels of cutting of leaves that a trim crosses, when a model is built.
 pub const TRIM_DEPTH: u32 = 4;
