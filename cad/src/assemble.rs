@@ -145,7 +145,8 @@ pub(crate) fn model(path: &Path, shape: &sys::Shape, description: Description) -
         .unzip();
     cut_into_leaves(&mut faces, &mut surfaces, &mut edges, &mut curves);
     link(&mut faces, &surfaces, &mut edges, &vertices);
-    let bounds = faces.iter().map(|face| face.bounds).chain(edges.iter().map(|edge| edge.bounds)).fold(Aabb::EMPTY, Aabb::union);
+    let bounds =
+        faces.iter().map(|face| face.bounds).chain(edges.iter().map(|edge| edge.bounds)).fold(Aabb::EMPTY, Aabb::union);
     let bounds = vertices.iter().fold(bounds, |all, vertex| all.with_point(vertex.point));
     let geometry = Geometry {
         faces: surfaces,
@@ -169,7 +170,12 @@ pub(crate) fn model(path: &Path, shape: &sys::Shape, description: Description) -
     Ok(model)
 }
 
-fn cut_into_leaves(faces: &mut [Face], surfaces: &mut [FaceGeometry], edges: &mut [Edge], curves: &mut [Option<EdgeGeometry>]) {
+fn cut_into_leaves(
+    faces: &mut [Face],
+    surfaces: &mut [FaceGeometry],
+    edges: &mut [Edge],
+    curves: &mut [Option<EdgeGeometry>],
+) {
     edges.par_iter_mut().zip(curves.par_iter_mut()).for_each(|(edge, curve)| {
         if let Some(curve) = curve {
             curve.leaves = edge_leaves(&curve.curve, curve.range);

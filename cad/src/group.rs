@@ -1,8 +1,8 @@
 //! CAD groups: sets of faces, of edges or of vertices, with a tree of samples and a tree of hull boxes each.
 
 use crate::boxes::{Aabb, BoxTree};
-use crate::curve::curve_d2;
 use crate::chart::surface_d2;
+use crate::curve::curve_d2;
 use crate::foot::{CurvePoint, Evaluation, Foot, SurfacePoint};
 use crate::ids::{EdgeId, EntityId, FaceId, VertexId};
 use crate::model::{Geometry, Model};
@@ -40,10 +40,19 @@ pub enum GroupError {
 /// A leaf of the group's tree: entity index in the model and the entity's own leaf.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Member {
-    Face { face: u32, leaf: u32 },
+    Face {
+        face: u32,
+        leaf: u32,
+    },
     /// `owner` is a face of the group that the edge bounds; `None` in groups of edges.
-    Edge { edge: u32, leaf: u32, owner: Option<u32> },
-    Vertex { vertex: u32 },
+    Edge {
+        edge: u32,
+        leaf: u32,
+        owner: Option<u32>,
+    },
+    Vertex {
+        vertex: u32,
+    },
 }
 
 /// A set of faces, of edges, or of vertices: the unit of projection. All queries may be made from many threads at once.
@@ -155,7 +164,11 @@ impl Group {
     }
 }
 
-fn sorted<I: Copy + Ord + Into<EntityId>>(ids: &[I], known: impl Fn(I) -> bool, count: usize) -> Result<Vec<I>, GroupError> {
+fn sorted<I: Copy + Ord + Into<EntityId>>(
+    ids: &[I],
+    known: impl Fn(I) -> bool,
+    count: usize,
+) -> Result<Vec<I>, GroupError> {
     let mut ids = ids.to_vec();
     ids.sort_unstable();
     ids.dedup();
@@ -198,7 +211,9 @@ impl Geometry {
                 let face = self.faces.get(id.index())?;
                 Evaluation::Surface(SurfacePoint::new(surface_d2(&face.handle, u, v), face.reversed))
             }
-            EntityId::Edge(id) => Evaluation::Curve(CurvePoint::new(curve_d2(&self.edges.get(id.index())?.as_ref()?.handle, u))),
+            EntityId::Edge(id) => {
+                Evaluation::Curve(CurvePoint::new(curve_d2(&self.edges.get(id.index())?.as_ref()?.handle, u)))
+            }
             EntityId::Vertex(id) => Evaluation::Vertex(*self.vertices.get(id.index())?),
         };
         evaluation.point().is_finite().then_some(evaluation)

@@ -155,7 +155,10 @@ impl FaceGeometry {
     pub(crate) fn bounds(&self) -> Aabb {
         let points = self.leaves.iter().flat_map(|leaf| {
             let steps: u32 = if matches!(self.chart, Chart::Plane { .. }) { 1 } else { 8 };
-            let at = move |k: u32| leaf.rect.at(f64::from(k / (steps + 1)) / f64::from(steps), f64::from(k % (steps + 1)) / f64::from(steps));
+            let at = move |k: u32| {
+                leaf.rect
+                    .at(f64::from(k / (steps + 1)) / f64::from(steps), f64::from(k % (steps + 1)) / f64::from(steps))
+            };
             (0..(steps + 1) * (steps + 1)).map(at).filter(|&p| !leaf.crossed || self.trim.contains(p))
         });
         Aabb::of_points(points.map(|[u, v]| self.chart.d2(u, v)[0]))

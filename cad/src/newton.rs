@@ -39,6 +39,12 @@ fn step(jet: &Jet, x: DVec3, held: impl Fn(usize, f64) -> bool) -> [f64; 2] {
     }
 }
 
+/// Where Newton's step leads from `p`, whatever the bounds.
+pub(crate) fn surface_target(jet: &Jet, x: DVec3, p: [f64; 2]) -> [f64; 2] {
+    let [a, b] = step(jet, x, |_, _| false);
+    [p[0] + a, p[1] + b]
+}
+
 /// Nearest point over `rect` as Newton finds it from `start`.
 pub(crate) fn on_surface(chart: &Chart, rect: &Rect, x: DVec3, start: [f64; 2]) -> Local {
     let mut p = rect.clamp(start);

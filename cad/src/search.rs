@@ -14,10 +14,14 @@ use crate::curve::curve_d2;
 use crate::foot::{End, Foot};
 use crate::group::{Group, Member};
 use crate::ids::{EdgeId, EntityId, FaceId, VertexId};
-use crate::leaf::{EdgeGeometry, EdgeLeaf, FaceGeometry, FaceLeaf};
+use crate::leaf::{EdgeGeometry, EdgeLeaf, FaceGeometry, FaceLeaf, Side};
 use crate::newton::{self, Local, ROUNDING};
-use crate::tolerance::{CUT_BUDGET, ORTHOGONAL, POINT, TIE};
+use crate::tolerance::{CUT_BUDGET, ORTHOGONAL, POINT, POLISH_LIMIT, TIE};
 use glam::DVec3;
+
+/// Golden section, and sections enough for rounding to end the search.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+const GOLDEN_STEPS: usize = 60;
 
 #[derive(Clone, Copy)]
 struct Best {
@@ -32,13 +36,15 @@ struct Search<'a> {
     best: Option<Best>,
     budget: usize,
     proven: bool,
+    /// Leaves of faces that must be cut, with their first local minimum: they wait until the bound is as small as the others make it.
+    deferred: Vec<(usize, Local)>,
 }
 
 impl Group {
     /// The closest point of the group to `x`, trims respected. `hint` is the foot of an earlier query to this group nearby: it
     /// makes the query faster, never wrong. A query point that is not finite gives a foot at infinite distance.
     pub fn closest(&self, x: DVec3, hint: Option<&Foot>) -> Foot {
-        let mut search = Search { group: self, x, best: None, budget: CUT_BUDGET, proven: true };
+        let mut search = Search { group: self, x, best: None, budget: CUT_BUDGET, proven: true, deferred: Vec::new() };
         let hinted = hint.map(|foot| foot.leaf as usize).filter(|&leaf| leaf < self.members.len());
         if x.is_finite() {
             let seed = hinted.unwrap_or_else(|| self.seed(x));
@@ -51,6 +57,7 @@ impl Group {
                     bound
                 }
             });
+            search.cut_deferred();
         }
         search.finish()
     }
@@ -116,7 +123,19 @@ impl Search<'_> {
         let local = newton::on_surface(&face.chart, &leaf.rect, self.x, start.unwrap_or(leaf.rect.center()));
         self.offer_on_face(index, face, leaf, local);
         if !self.is_decided(leaf.certificate.as_ref()) {
-            self.cut_face(index, face, leaf, local);
+            self.deferred.push((index, local));
+        }
+    }
+
+    fn cut_deferred(&mut self) {
+        let group = self.group;
+        for (index, local) in std::mem::take(&mut self.deferred) {
+            let Member::Face { face, leaf } = group.members[index] else { continue };
+            let face = &group.geometry.faces[face as usize];
+            let leaf = &face.leaves[leaf as usize];
+            if leaf.slab.distance_squared(self.x) <= self.bound() && !self.is_beyond(face, leaf.rect, local) {
+                self.cut_face(index, face, leaf, local);
+            }
         }
     }
 
@@ -144,7 +163,8 @@ impl Search<'_> {
             }
             let part = FaceLeaf::new(&face.chart, rect, leaf.crossed);
             let far = part.slab.distance_squared(self.x) > self.bound();
-            if far || self.is_decided(part.certificate.as_ref()) || part.bounds.diagonal() < POINT * self.group.diagonal {
+            if far || self.is_decided(part.certificate.as_ref()) || part.bounds.diagonal() < POINT * self.group.diagonal
+            {
                 continue;
             }
             if self.budget == 0 {
@@ -202,8 +222,14 @@ impl Search<'_> {
         match self.group.members[best.member] {
             Member::Face { face, leaf } => {
                 let geometry = &geometry.faces[face as usize];
-                let (parameters, jet) = polish_surface(geometry, &geometry.leaves[leaf as usize], self.x, best.parameters);
+                let (parameters, jet) =
+                    polish_surface(geometry, &geometry.leaves[leaf as usize], self.x, best.parameters);
                 let end = self.end_on_face(geometry, &geometry.leaves[leaf as usize], parameters, &jet);
+                if let (End::Stalled { .. }, true) = (end, geometry.leaves[leaf as usize].crossed) {
+                    if let Some(foot) = self.slide_to_trim(best, face as usize, jet[0]) {
+                        return foot;
+                    }
+                }
                 self.foot(best, FaceId::new(face as usize).into(), parameters, jet[0], end)
             }
             Member::Edge { edge, owner, .. } => self.finish_edge(best, edge as usize, owner.map(|face| face as usize)),
@@ -222,7 +248,15 @@ impl Search<'_> {
     fn nowhere(&self) -> Foot {
         let entity = self.group.entities()[0];
         let end = End::Stalled { residual: f64::INFINITY };
-        Foot { point: DVec3::NAN, entity, parameters: [f64::NAN; 2], distance: f64::INFINITY, end, proven: false, leaf: 0 }
+        Foot {
+            point: DVec3::NAN,
+            entity,
+            parameters: [f64::NAN; 2],
+            distance: f64::INFINITY,
+            end,
+            proven: false,
+            leaf: 0,
+        }
     }
 
     fn residual_limit(&self, distance: f64) -> f64 {
@@ -231,7 +265,7 @@ impl Search<'_> {
 
     fn end_on_face(&self, face: &FaceGeometry, leaf: &FaceLeaf, [u, v]: [f64; 2], jet: &Jet) -> End {
         let r = jet[0] - self.x;
-        let residual = tangential(r, jet[1]).max(tangential(r, jet[2]));
+        let residual = residual(jet, self.x);
         let at = |range: [f64; 2], t: f64| t <= range[0] || t >= range[1];
         if residual <= self.residual_limit(r.length()) {
             End::Interior
@@ -240,6 +274,30 @@ impl Search<'_> {
         } else {
             End::Stalled { residual }
         }
+    }
+
+    /// Where the curve of a boundary edge lies beside its pcurve on the surface (within the edge's tolerance), a point of the
+    /// surface at the trim can be nearer than the curve. Finds the nearest point of the surface along the pcurve of the edge that is nearest to `near`.
+    fn slide_to_trim(&self, best: Best, index: usize, near: DVec3) -> Option<Foot> {
+        let geometry = &self.group.geometry;
+        let face = &geometry.faces[index];
+        let nearest = |side: &Side| {
+            let edge = geometry.edges[side.edge?].as_ref()?;
+            let on_leaf = |leaf: &EdgeLeaf| {
+                newton::on_curve(&edge.curve, leaf.range, near, 0.5 * (leaf.range[0] + leaf.range[1]))
+            };
+            let local =
+                edge.leaves.iter().map(on_leaf).min_by(|a, b| a.distance_squared.total_cmp(&b.distance_squared))?;
+            let fraction = (local.parameters[0] - edge.range[0]) / (edge.range[1] - edge.range[0]);
+            Some((local.distance_squared, side.range[0] + fraction * (side.range[1] - side.range[0])))
+        };
+        let sides = face.sides.iter().filter_map(|side| Some((nearest(side)?, side)));
+        let ((_, t), side) = sides.min_by(|a, b| a.0.0.total_cmp(&b.0.0))?;
+        let parameters = side.nearest_on(face, self.x, t)?;
+        let point = surface_d2(&face.handle, parameters[0], parameters[1])[0];
+        let end = End::OnTrim(EdgeId::new(side.edge?));
+        (point.distance(self.x) <= best.distance + self.tie())
+            .then(|| self.foot(best, FaceId::new(index).into(), parameters, point, end))
     }
 
     fn finish_edge(&self, best: Best, index: usize, owner: Option<usize>) -> Foot {
@@ -274,30 +332,32 @@ fn tangential(r: DVec3, d: DVec3) -> f64 {
     if length > 0.0 { (r.dot(d) / length).abs() } else { 0.0 }
 }
 
-/// Newton's last step on OCCT's own surface, taken only if it makes the residual smaller.
-fn polish_surface(face: &FaceGeometry, leaf: &FaceLeaf, x: DVec3, [u, v]: [f64; 2]) -> ([f64; 2], Jet) {
-    let jet = surface_d2(&face.handle, u, v);
+/// Newton's last steps on OCCT's own surface, taken while they make the residual smaller.
+fn polish_surface(face: &FaceGeometry, leaf: &FaceLeaf, x: DVec3, mut p: [f64; 2]) -> ([f64; 2], Jet) {
+    let mut jet = surface_d2(&face.handle, p[0], p[1]);
     let inside = |t: f64, range: [f64; 2]| t > range[0] && t < range[1];
-    if !(inside(u, leaf.rect.u) && inside(v, leaf.rect.v)) {
-        return ([u, v], jet);
+    for _ in 0..POLISH_LIMIT {
+        if !(inside(p[0], leaf.rect.u) && inside(p[1], leaf.rect.v)) {
+            break;
+        }
+        let next = leaf.rect.clamp(newton::surface_target(&jet, x, p));
+        if next.iter().any(|t| !t.is_finite()) || (leaf.crossed && !face.trim.contains(next)) {
+            break;
+        }
+        let polished = surface_d2(&face.handle, next[0], next[1]);
+        let farther = polished[0].distance_squared(x) > jet[0].distance_squared(x) * ROUNDING;
+        if farther || residual(&polished, x) >= residual(&jet, x) {
+            break;
+        }
+        (p, jet) = (next, polished);
     }
+    (p, jet)
+}
+
+/// Length of the larger tangential part of the line from `x`.
+fn residual(jet: &Jet, x: DVec3) -> f64 {
     let r = jet[0] - x;
-    let h = [
-        jet[1].length_squared() + r.dot(jet[3]),
-        jet[1].dot(jet[2]) + r.dot(jet[4]),
-        jet[2].length_squared() + r.dot(jet[5]),
-    ];
-    let g = [r.dot(jet[1]), r.dot(jet[2])];
-    let d = (h[0] * h[2] - h[1] * h[1]).recip();
-    let next = leaf.rect.clamp([u + (h[1] * g[1] - h[2] * g[0]) * d, v + (h[1] * g[0] - h[0] * g[1]) * d]);
-    if !next[0].is_finite() || !next[1].is_finite() || (leaf.crossed && !face.trim.contains(next)) {
-        return ([u, v], jet);
-    }
-    let polished = surface_d2(&face.handle, next[0], next[1]);
-    let before = tangential(r, jet[1]).max(tangential(r, jet[2]));
-    let s = polished[0] - x;
-    let after = tangential(s, polished[1]).max(tangential(s, polished[2]));
-    if after < before && s.length_squared() <= r.length_squared() * ROUNDING { (next, polished) } else { ([u, v], jet) }
+    tangential(r, jet[1]).max(tangential(r, jet[2]))
 }
 
 fn polish_curve(edge: &EdgeGeometry, x: DVec3, t: f64) -> (f64, [DVec3; 3]) {
@@ -308,6 +368,28 @@ fn polish_curve(edge: &EdgeGeometry, x: DVec3, t: f64) -> (f64, [DVec3; 3]) {
     let s = polished[0] - x;
     let better = tangential(s, polished[1]) < tangential(r, jet[1]);
     if better && s.length_squared() <= r.length_squared() * ROUNDING { (next, polished) } else { (t, jet) }
+}
+
+impl Side {
+    /// Parameters of the point of the surface along the pcurve that is nearest to `x`, by golden sections around `t`.
+    fn nearest_on(&self, face: &FaceGeometry, x: DVec3, t: f64) -> Option<[f64; 2]> {
+        let at = |t: f64| {
+            let mut jet = [0.0; 4];
+            self.pcurve.d1(t, &mut jet).ok().map(|()| [jet[0], jet[1]])
+        };
+        let distance = |t: f64| at(t).map_or(f64::INFINITY, |[u, v]| face.chart.d2(u, v)[0].distance_squared(x));
+        let reach = 0.02 * (self.range[1] - self.range[0]);
+        let (mut low, mut high) = ((t - reach).max(self.range[0]), (t + reach).min(self.range[1]));
+        for _ in 0..GOLDEN_STEPS {
+            let (a, b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
+            if distance(a) <= distance(b) {
+                high = b;
+            } else {
+                low = a;
+            }
+        }
+        at(0.5 * (low + high))
+    }
 }
 
 impl FaceGeometry {

@@ -16,6 +16,9 @@ pub const NEWTON_STEP: f64 = 1e-14;
 /// Newton steps for one leaf; certified leaves take 3 to 6.
 pub const NEWTON_LIMIT: usize = 40;
 
+/// Newton steps on OCCT's own surface after the search.
+pub const POLISH_LIMIT: usize = 4;
+
 /// Cuts of leaves that one query may spend to prove its answer; beyond it the foot is reported as not proven.
 pub const CUT_BUDGET: usize = 400;
 
