@@ -80,7 +80,7 @@ fn sides_of(shape: &sys::Shape, face: usize) -> Result<(Vec<Side>, Trim), sys::E
     let loops = shape.loops(face)?;
     let mut sides = Vec::new();
     let mut spans = Vec::new();
-    for k in 0..loops.len() {
+    for k in 0..loops.count() {
         let coedge = loops.coedge(k)?;
         let pcurve = loops.pcurve(k)?;
         spans.push((pcurve.spans()?, coedge.reversed));
@@ -216,10 +216,10 @@ fn describe(model: &mut Model, description: Description) {
         match label.kind {
             0 => {
                 named.entry(label.name).or_default().push(FaceId::new(index));
-                model.faces[index].label = own;
+                set(&mut model.faces, index, |face| face.label = own);
             }
-            1 => model.edges[index].label = own,
-            2 => model.vertices[index].label = own,
+            1 => set(&mut model.edges, index, |edge| edge.label = own),
+            2 => set(&mut model.vertices, index, |vertex| vertex.label = own),
             _ => groups.entry((label.reference, label.name)).or_default().push(FaceId::new(index)),
         }
     }
@@ -232,4 +232,11 @@ fn describe(model: &mut Model, description: Description) {
         group.faces.dedup();
     }
     model.dropped = description.dropped;
+}
+
+/// Edits the entity with this index, if there is one.
+fn set<T>(entities: &mut [T], index: usize, edit: impl FnOnce(&mut T)) {
+    if let Some(entity) = entities.get_mut(index) {
+        edit(entity);
+    }
 }

@@ -133,7 +133,7 @@ mod ffi {
         fn d1(self: &Pcurve, t: f64, jet: &mut [f64; 4]) -> Result<()>;
         fn spans(self: &Pcurve) -> Result<Spans>;
 
-        fn len(self: &Loops) -> usize;
+        fn count(self: &Loops) -> usize;
         fn coedge(self: &Loops, i: usize) -> Result<Coedge>;
         fn pcurve(self: &Loops, i: usize) -> Result<UniquePtr<Pcurve>>;
 
