@@ -225,10 +225,10 @@ impl Search<'_> {
                 let (parameters, jet) =
                     polish_surface(geometry, &geometry.leaves[leaf as usize], self.x, best.parameters);
                 let end = self.end_on_face(geometry, &geometry.leaves[leaf as usize], parameters, &jet);
-                if let (End::Stalled { .. }, true) = (end, geometry.leaves[leaf as usize].crossed) {
-                    if let Some(foot) = self.slide_to_trim(best, face as usize, jet[0]) {
-                        return foot;
-                    }
+                let at_trim = matches!(end, End::Stalled { .. }) && geometry.leaves[leaf as usize].crossed;
+                let slid = if at_trim { self.slide_to_trim(best, face as usize, jet[0]) } else { None };
+                if let Some(foot) = slid {
+                    return foot;
                 }
                 self.foot(best, FaceId::new(face as usize).into(), parameters, jet[0], end)
             }
