@@ -50,8 +50,10 @@ pub(crate) enum Member {
         leaf: u32,
         owner: Option<u32>,
     },
+    /// `owner` is a face of the group that the vertex is a corner of; `None` in groups of vertices.
     Vertex {
         vertex: u32,
+        owner: Option<u32>,
     },
 }
 
@@ -67,7 +69,8 @@ pub struct Group {
 }
 
 impl Group {
-    /// Group of faces; their boundary edges are taken along, as ends of trimmed faces. Order and repetition of `ids` do not matter.
+    /// Group of faces; their boundary edges and corners are taken along: the
+    /// closest point of a trimmed face may lie there, off the surface by up to the tolerance of the edge or vertex. Order and repetition of `ids` do not matter.
     ///
     /// # Errors
     /// [`GroupError`]: no ids, ids that the model lacks, nothing to project on.
@@ -87,6 +90,14 @@ impl Group {
                 let owner = Some(id.index() as u32);
                 let leaves = curve.leaves.len() as u32;
                 members.extend((0..leaves).map(|leaf| Member::Edge { edge: edge as u32, leaf, owner }));
+            }
+        }
+        let mut corners = std::collections::BTreeSet::new();
+        for id in &ids {
+            let edges = geometry.faces[id.index()].sides.iter().filter_map(|side| side.edge);
+            for vertex in edges.filter(|&edge| geometry.edges[edge].is_some()).flat_map(|edge| geometry.ends[edge]) {
+                let Some(vertex) = vertex.filter(|vertex| corners.insert(vertex.index())) else { continue };
+                members.push(Member::Vertex { vertex: vertex.index() as u32, owner: Some(id.index() as u32) });
             }
         }
         Self::new(model, ids.into_iter().map(EntityId::Face).collect(), members)
@@ -118,7 +129,7 @@ impl Group {
     pub fn of_vertices(model: &Model, ids: &[VertexId]) -> Result<Self, GroupError> {
         let count = model.vertices().len();
         let ids = sorted(ids, |id| id.index() < count, count)?;
-        let members = ids.iter().map(|id| Member::Vertex { vertex: id.index() as u32 }).collect();
+        let members = ids.iter().map(|id| Member::Vertex { vertex: id.index() as u32, owner: None }).collect();
         Self::new(model, ids.into_iter().map(EntityId::Vertex).collect(), members)
     }
 
@@ -186,7 +197,7 @@ impl Geometry {
             Member::Edge { edge, leaf, .. } => {
                 self.edges[edge as usize].as_ref().map_or(Aabb::EMPTY, |e| e.leaves[leaf as usize].bounds)
             }
-            Member::Vertex { vertex } => Aabb::of_points([self.vertices[vertex as usize]]),
+            Member::Vertex { vertex, .. } => Aabb::of_points([self.vertices[vertex as usize]]),
         }
     }
 
@@ -201,7 +212,7 @@ impl Geometry {
                 let [a, b] = e.leaves[leaf as usize].range;
                 e.curve.d2(0.5 * (a + b))[0]
             }),
-            Member::Vertex { vertex } => self.vertices[vertex as usize],
+            Member::Vertex { vertex, .. } => self.vertices[vertex as usize],
         }
     }
 

@@ -19,6 +19,7 @@ mod certificate;
 mod chart;
 mod closed_form;
 mod curve;
+mod finish;
 mod foot;
 mod format;
 mod group;
