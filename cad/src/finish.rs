@@ -1,6 +1,6 @@
 //! The end of a search: the winner on OCCT's own geometry, polished, and how it ended.
 
-use crate::chart::{Jet, surface_d2};
+use crate::chart::{Jet, Rect, surface_d2};
 use crate::curve::curve_d2;
 use crate::foot::{End, Foot};
 use crate::group::Member;
@@ -9,7 +9,7 @@ use crate::leaf::{EdgeGeometry, EdgeLeaf, FaceGeometry, FaceLeaf, Side};
 use crate::model::Geometry;
 use crate::newton::{self, ROUNDING};
 use crate::search::{Best, Search};
-use crate::tolerance::{ORTHOGONAL, POLISH_LIMIT};
+use crate::tolerance::{LEAF_MARGIN, ORTHOGONAL, POLISH_LIMIT};
 use glam::DVec3;
 
 /// Golden section, and sections enough for rounding to end the search.
@@ -141,12 +141,9 @@ fn tangential(r: DVec3, d: DVec3) -> f64 {
 /// Newton's last steps on OCCT's own surface, taken while they make the residual smaller.
 fn polish_surface(face: &FaceGeometry, leaf: &FaceLeaf, x: DVec3, mut p: [f64; 2]) -> ([f64; 2], Jet) {
     let mut jet = surface_d2(&face.handle, p[0], p[1]);
-    let inside = |t: f64, range: [f64; 2]| t > range[0] && t < range[1];
+    let window = around(face, leaf);
     for _ in 0..POLISH_LIMIT {
-        if !(inside(p[0], leaf.rect.u) && inside(p[1], leaf.rect.v)) {
-            break;
-        }
-        let next = leaf.rect.clamp(newton::surface_target(&jet, x, p));
+        let next = window.clamp(newton::surface_target(&jet, x, p));
         if next.iter().any(|t| !t.is_finite()) || (leaf.crossed && !face.trim.contains(next)) {
             break;
         }
@@ -158,6 +155,13 @@ fn polish_surface(face: &FaceGeometry, leaf: &FaceLeaf, x: DVec3, mut p: [f64; 2
         (p, jet) = (next, polished);
     }
     (p, jet)
+}
+
+/// A leaf's range and a little of its neighbours: of two leaves that tie, the one without the foot may have won.
+fn around(face: &FaceGeometry, leaf: &FaceLeaf) -> Rect {
+    let [du, dv] = leaf.rect.size().map(|size| LEAF_MARGIN * size);
+    let widen = |r: [f64; 2], d: f64, all: [f64; 2]| [(r[0] - d).max(all[0]), (r[1] + d).min(all[1])];
+    Rect { u: widen(leaf.rect.u, du, face.rect.u), v: widen(leaf.rect.v, dv, face.rect.v) }
 }
 
 /// Length of the larger tangential part of the line from `x`.

@@ -16,6 +16,9 @@ pub const NEWTON_STEP: f64 = 1e-14;
 /// Newton steps for one leaf; certified leaves take 3 to 6.
 pub const NEWTON_LIMIT: usize = 40;
 
+/// How far, in sizes of the leaf, polishing may leave it.
+pub const LEAF_MARGIN: f64 = 1e-5;
+
 /// Newton steps on OCCT's own surface after the search.
 pub const POLISH_LIMIT: usize = 4;
 
