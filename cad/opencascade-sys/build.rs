@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-const INCLUDE_DIRS: [&str; 3] = ["/usr/include/opencascade", "/usr/local/include/opencascade", "/opt/include/opencascade"];
+const INCLUDE_DIRS: [&str; 3] =
+    ["/usr/include/opencascade", "/usr/local/include/opencascade", "/opt/include/opencascade"];
 const SHIM: [&str; 3] = ["geometry", "shape", "import"];
 
 fn main() {
@@ -55,8 +56,19 @@ fn version(header: &Path) -> Option<(u32, u32)> {
 
 /// Data exchange was renamed in 7.8; the others kept their names.
 fn libraries(version: (u32, u32)) -> Vec<&'static str> {
-    let exchange: &[&str] = if version >= (7, 8) { &["TKDESTEP", "TKDEIGES"] } else { &["TKSTEP", "TKSTEPBase", "TKSTEPAttr", "TKIGES"] };
-    let common =
-        ["TKXSBase", "TKShHealing", "TKTopAlgo", "TKBRep", "TKGeomAlgo", "TKGeomBase", "TKG3d", "TKG2d", "TKMath", "TKernel"];
+    let exchange: &[&str] =
+        if version >= (7, 8) { &["TKDESTEP", "TKDEIGES"] } else { &["TKSTEP", "TKSTEPBase", "TKSTEPAttr", "TKIGES"] };
+    let common = [
+        "TKXSBase",
+        "TKShHealing",
+        "TKTopAlgo",
+        "TKBRep",
+        "TKGeomAlgo",
+        "TKGeomBase",
+        "TKG3d",
+        "TKG2d",
+        "TKMath",
+        "TKernel",
+    ];
     exchange.iter().copied().chain(common).collect()
 }

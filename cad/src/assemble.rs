@@ -80,7 +80,7 @@ fn sides_of(shape: &sys::Shape, face: usize) -> Result<(Vec<Side>, Trim), sys::E
     let loops = shape.loops(face)?;
     let mut sides = Vec::new();
     let mut spans = Vec::new();
-    for k in 0..loops.len() {
+    for k in 0..loops.count() {
         let coedge = loops.coedge(k)?;
         let pcurve = loops.pcurve(k)?;
         spans.push((pcurve.spans()?, coedge.reversed));
@@ -145,7 +145,8 @@ pub(crate) fn model(path: &Path, shape: &sys::Shape, description: Description) -
         .unzip();
     cut_into_leaves(&mut faces, &mut surfaces, &mut edges, &mut curves);
     link(&mut faces, &surfaces, &mut edges, &vertices);
-    let bounds = faces.iter().map(|face| face.bounds).chain(edges.iter().map(|edge| edge.bounds)).fold(Aabb::EMPTY, Aabb::union);
+    let bounds =
+        faces.iter().map(|face| face.bounds).chain(edges.iter().map(|edge| edge.bounds)).fold(Aabb::EMPTY, Aabb::union);
     let bounds = vertices.iter().fold(bounds, |all, vertex| all.with_point(vertex.point));
     let geometry = Geometry {
         faces: surfaces,
@@ -169,7 +170,12 @@ pub(crate) fn model(path: &Path, shape: &sys::Shape, description: Description) -
     Ok(model)
 }
 
-fn cut_into_leaves(faces: &mut [Face], surfaces: &mut [FaceGeometry], edges: &mut [Edge], curves: &mut [Option<EdgeGeometry>]) {
+fn cut_into_leaves(
+    faces: &mut [Face],
+    surfaces: &mut [FaceGeometry],
+    edges: &mut [Edge],
+    curves: &mut [Option<EdgeGeometry>],
+) {
     edges.par_iter_mut().zip(curves.par_iter_mut()).for_each(|(edge, curve)| {
         if let Some(curve) = curve {
             curve.leaves = edge_leaves(&curve.curve, curve.range);
@@ -210,10 +216,10 @@ fn describe(model: &mut Model, description: Description) {
         match label.kind {
             0 => {
                 named.entry(label.name).or_default().push(FaceId::new(index));
-                model.faces[index].label = own;
+                set(&mut model.faces, index, |face| face.label = own);
             }
-            1 => model.edges[index].label = own,
-            2 => model.vertices[index].label = own,
+            1 => set(&mut model.edges, index, |edge| edge.label = own),
+            2 => set(&mut model.vertices, index, |vertex| vertex.label = own),
             _ => groups.entry((label.reference, label.name)).or_default().push(FaceId::new(index)),
         }
     }
@@ -226,4 +232,11 @@ fn describe(model: &mut Model, description: Description) {
         group.faces.dedup();
     }
     model.dropped = description.dropped;
+}
+
+/// Edits the entity with this index, if there is one.
+fn set<T>(entities: &mut [T], index: usize, edit: impl FnOnce(&mut T)) {
+    if let Some(entity) = entities.get_mut(index) {
+        edit(entity);
+    }
 }

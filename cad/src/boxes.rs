@@ -110,7 +110,13 @@ impl BoxTree {
         }
         let centers = Aabb::of_points(leaves.iter().map(|&leaf| boxes[leaf as usize].center()));
         let extent = centers.max - centers.min;
-        let axis = if extent.x >= extent.y && extent.x >= extent.z { 0 } else if extent.y >= extent.z { 1 } else { 2 };
+        let axis = if extent.x >= extent.y && extent.x >= extent.z {
+            0
+        } else if extent.y >= extent.z {
+            1
+        } else {
+            2
+        };
         let half = leaves.len() / 2;
         leaves.select_nth_unstable_by(half, |&a, &b| {
             let (ca, cb) = (boxes[a as usize].center()[axis], boxes[b as usize].center()[axis]);
@@ -162,7 +168,8 @@ impl BoxTree {
                 }
                 continue;
             }
-            let near = [node.first, node.first + 1].map(|child| (child, self.nodes[child as usize].bounds.distance_squared(x)));
+            let near = [node.first, node.first + 1]
+                .map(|child| (child, self.nodes[child as usize].bounds.distance_squared(x)));
             let (far, near) = if near[0].1 <= near[1].1 { (near[1], near[0]) } else { (near[0], near[1]) };
             stack[depth] = far;
             stack[depth + 1] = near;
@@ -172,7 +179,12 @@ impl BoxTree {
 
     /// The nearest leaf to `x` not farther than `sqrt(bound)`. `distance_squared(leaf)` is the exact squared distance of a leaf, or `None` for
     /// a leaf that does not count. Of equally near leaves the one with the smallest index wins.
-    pub fn nearest(&self, x: DVec3, bound: f64, mut distance_squared: impl FnMut(usize) -> Option<f64>) -> Option<Nearest> {
+    pub fn nearest(
+        &self,
+        x: DVec3,
+        bound: f64,
+        mut distance_squared: impl FnMut(usize) -> Option<f64>,
+    ) -> Option<Nearest> {
         let mut best: Option<Nearest> = None;
         self.visit(x, bound, |leaf, bound| {
             let Some(distance) = distance_squared(leaf).filter(|&d| d <= bound) else { return bound };

@@ -1,9 +1,9 @@
 //! When is the foot in a leaf the only one? Where `½|S − x|²` is convex over the leaf's parameters.
 //!
 //! In parameters scaled so that the tangents at the leaf's centre `c` are orthonormal, the Hessian is `G + (S − x)·S''` with `G = I` at the
-//! centre. Over the leaf it differs from `I + (c − x)·S''(c)` by no more than `dg + radius·f + |c − x|·df`, where `dg` bounds the change of
-//! `G`, `f` the size of `S''`, `df` its change, and `radius` the size of the leaf. The three are sampled (4 × 4 points) and
-//! widened by [`BOUND_SAFETY`]; the leaf is certified while the smallest eigenvalue at the centre exceeds that.
+//! centre. Over the leaf it differs from `I + (c − x)·S''(c)` by no more than `dg + q + |c − x|·df`, where `dg` bounds the change of
+//! `G`, `q` the products `(S − c)·S''` and `df` the change of `S''`. `S''` is sampled (4 × 4 points), `S` ranges over the hull, and the
+//! three are widened by [`BOUND_SAFETY`]; the leaf is certified while the smallest eigenvalue at the centre exceeds their sum.
 
 use crate::chart::{Chart, Jet, Rect};
 use crate::curve::{Curve, Hull};
@@ -17,7 +17,7 @@ pub(crate) struct Certificate {
     /// `S''` at the centre in scaled parameters: 11, 12, 22 (a curve uses the first alone).
     second: [DVec3; 3],
     dg: f64,
-    f: f64,
+    q: f64,
     df: f64,
     radius: f64,
 }
@@ -50,6 +50,15 @@ fn norm(second: &[DVec3; 3]) -> f64 {
     (second[0].length_squared() + 2.0 * second[1].length_squared() + second[2].length_squared()).sqrt()
 }
 
+/// Largest products of hull points, seen from the centre, with second derivatives (Frobenius norm of a symmetric 2 × 2 matrix).
+fn products(hull: &Hull, center: DVec3, second: &[DVec3; 3]) -> f64 {
+    let [a, b, c] = second.map(|s| {
+        let reach = hull.points.iter().map(|p| (*p - center).dot(s).abs()).fold(0.0, f64::max);
+        reach + hull.pad * s.length()
+    });
+    (a * a + 2.0 * b * b + c * c).sqrt()
+}
+
 fn radius(hull: &Hull, center: DVec3) -> f64 {
     hull.points.iter().map(|p| p.distance(center)).fold(0.0, f64::max) + hull.pad
 }
@@ -60,25 +69,25 @@ impl Certificate {
         let jet = chart.d2_within(rect, rect.center());
         let t = scaling(&jet)?;
         let center = scaled(&jet, t);
-        let (mut dg, mut f, mut df) = (0.0_f64, norm(&center.second), 0.0_f64);
+        let (mut dg, mut q, mut df) = (0.0_f64, products(hull, jet[0], &center.second), 0.0_f64);
         for k in 0..16 {
             let at = rect.at(f64::from(k / 4) / 3.0, f64::from(k % 4) / 3.0);
             let here = scaled(&chart.d2_within(rect, at), t);
             let [a, b] = here.first;
             let g = [a.dot(a) - 1.0, a.dot(b), b.dot(b) - 1.0];
             dg = dg.max((g[0] * g[0] + 2.0 * g[1] * g[1] + g[2] * g[2]).sqrt());
-            f = f.max(norm(&here.second));
+            q = q.max(products(hull, jet[0], &here.second));
             df = df.max(norm(&[0, 1, 2].map(|i| here.second[i] - center.second[i])));
         }
         let certificate = Self {
             center: jet[0],
             second: center.second,
             dg: BOUND_SAFETY * dg,
-            f: BOUND_SAFETY * f,
+            q: BOUND_SAFETY * q,
             df: BOUND_SAFETY * df,
             radius: radius(hull, jet[0]),
         };
-        (dg + f + df).is_finite().then_some(certificate)
+        (dg + q + df).is_finite().then_some(certificate)
     }
 
     /// Of a curve over `t0..=t1`.
@@ -86,24 +95,25 @@ impl Certificate {
         let [p, a, aa] = curve.d2(0.5 * (t0 + t1));
         let t = a.length().recip();
         let second = t * t * aa;
-        let (mut dg, mut f, mut df) = (0.0_f64, second.length(), 0.0_f64);
+        let along = |s: DVec3| products(hull, p, &[s, DVec3::ZERO, DVec3::ZERO]);
+        let (mut dg, mut q, mut df) = (0.0_f64, along(second), 0.0_f64);
         for k in 0..7 {
             // inside by a hair: at a knot the neighbouring span would answer
             let fraction = (f64::from(k) / 6.0).clamp(1e-9, 1.0 - 1e-9);
             let [_, b, bb] = curve.d2(t0 + (t1 - t0) * fraction);
             dg = dg.max((t * t * b.length_squared() - 1.0).abs());
-            f = f.max((t * t * bb).length());
+            q = q.max(along(t * t * bb));
             df = df.max((t * t * bb - second).length());
         }
         let certificate = Self {
             center: p,
             second: [second, DVec3::ZERO, DVec3::ZERO],
             dg: BOUND_SAFETY * dg,
-            f: BOUND_SAFETY * f,
+            q: BOUND_SAFETY * q,
             df: BOUND_SAFETY * df,
             radius: radius(hull, p),
         };
-        (dg + f + df).is_finite().then_some(certificate)
+        (dg + q + df).is_finite().then_some(certificate)
     }
 
     /// Whether the squared distance from `x` has at most one minimum over the leaf.
@@ -111,12 +121,12 @@ impl Certificate {
         let r = self.center - x;
         let [a, b, c] = self.second.map(|s| s.dot(r));
         let smallest = 1.0 + 0.5 * ((a + c) - ((a - c) * (a - c) + 4.0 * b * b).sqrt());
-        smallest > self.dg + self.radius * self.f + r.length() * self.df
+        smallest > self.dg + self.q + r.length() * self.df
     }
 
-    /// Turn of the tangent over the leaf, about, in radians; leaves are cut until it is small.
+    /// Turn of the tangents over the leaf, about, in radians (their stretch counts in part); leaves are cut until it is small.
     pub(crate) fn turn(&self) -> f64 {
-        self.dg.max(self.radius * self.f)
+        (0.6 * self.dg).max(self.q)
     }
 
     /// Largest distance of a point of the leaf from its centre.

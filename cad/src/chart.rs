@@ -41,6 +41,12 @@ impl Rect {
         [u.clamp(self.u[0], self.u[1]), v.clamp(self.v[0], self.v[1])]
     }
 
+    /// Four parts that meet at parameters inside.
+    pub(crate) fn quarters(&self, [u, v]: [f64; 2]) -> [Self; 4] {
+        let (us, vs) = ([[self.u[0], u], [u, self.u[1]]], [[self.v[0], v], [v, self.v[1]]]);
+        [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(i, j)| Self { u: us[i], v: vs[j] })
+    }
+
     /// Two halves, cut across direction 0 (u) or 1 (v).
     pub(crate) fn halves(&self, direction: usize) -> [Self; 2] {
         let [u, v] = self.center();
@@ -297,14 +303,7 @@ fn spin(axis: &Axis, [c, c1, c2]: [DVec3; 3], u: f64) -> Jet {
     let (h, r, q) = axis.split(c);
     let (h1, r1, q1) = axis.split(axis.o + c1);
     let (h2, r2, q2) = axis.split(axis.o + c2);
-    [
-        axis.o + turn(h, r, q),
-        slide(r, q),
-        turn(h1, r1, q1),
-        -(cos * r + sin * q),
-        slide(r1, q1),
-        turn(h2, r2, q2),
-    ]
+    [axis.o + turn(h, r, q), slide(r, q), turn(h1, r1, q1), -(cos * r + sin * q), slide(r1, q1), turn(h2, r2, q2)]
 }
 
 /// Triangle around the arc that `p` runs through while `u` goes over a range of at most a quarter turn.
@@ -328,9 +327,13 @@ fn cut_at_axis(axis: &Axis, meridian: &Curve, [a, b]: [f64; 2]) -> Vec<[f64; 2]>
 }
 
 fn sampled_hull(chart: &Chart, rect: Rect) -> Hull {
-    let points: Vec<DVec3> = (0..25).map(|k| chart.at(rect.at(f64::from(k / 5) / 4.0, f64::from(k % 5) / 4.0))).collect();
+    let points: Vec<DVec3> =
+        (0..25).map(|k| chart.at(rect.at(f64::from(k / 5) / 4.0, f64::from(k % 5) / 4.0))).collect();
     let bend = |a: usize, b: usize, c: usize| (points[a] - 2.0 * points[b] + points[c]).length();
-    let bends = (0..5).flat_map(|i| (0..3).flat_map(move |j| [[5 * i + j, 5 * i + j + 1, 5 * i + j + 2], [5 * j + i, 5 * j + 5 + i, 5 * j + 10 + i]]));
+    let bends = (0..5).flat_map(|i| {
+        (0..3)
+            .flat_map(move |j| [[5 * i + j, 5 * i + j + 1, 5 * i + j + 2], [5 * j + i, 5 * j + 5 + i, 5 * j + 10 + i]])
+    });
     let pad = 2.0 * bends.map(|[a, b, c]| bend(a, b, c)).fold(0.0, f64::max);
     Hull { points, pad, sound: false }
 }

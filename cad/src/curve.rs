@@ -26,6 +26,13 @@ impl Hull {
         Self { points, pad: 0.0, sound: true }
     }
 
+    /// Whether all of the hull lies beyond the plane through `p` that is normal to `p − x`: then nothing in it is nearer to `x` than `p`.
+    pub(crate) fn is_beyond(&self, x: DVec3, p: DVec3, slack: f64) -> bool {
+        let distance = (p - x).length();
+        let n = (p - x) / distance;
+        self.points.iter().all(|h| (*h - x).dot(n) >= distance + self.pad - slack)
+    }
+
     pub(crate) fn bounds(&self) -> Aabb {
         Aabb::of_points(self.points.iter().copied()).grown(self.pad)
     }

@@ -32,7 +32,7 @@ pub enum End {
     OnTrim(EdgeId),
     /// On a line where the surface or curve is not smooth, or ends without an edge.
     OnCrease,
-    /// At the end of an edge.
+    /// At the end of an edge, or at a corner of the face.
     OnEnd(VertexId),
     /// The best point found is not a minimum: `residual` is the length of the tangential part of (foot − query point).
     Stalled {

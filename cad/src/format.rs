@@ -23,7 +23,10 @@ fn of_head(head: &[u8]) -> Option<SourceFormat> {
     let start = head.trim_ascii_start();
     if start.starts_with(b"\xef\xbb\xbfISO-10303-21") || start.starts_with(b"ISO-10303-21") || holds(b"ISO-10303-21;") {
         Some(SourceFormat::Step)
-    } else if start.starts_with(b"DBRep_DrawableShape") || holds(b"CASCADE Topology V") || holds(b"Open CASCADE Topology V") {
+    } else if start.starts_with(b"DBRep_DrawableShape")
+        || holds(b"CASCADE Topology V")
+        || holds(b"Open CASCADE Topology V")
+    {
         Some(SourceFormat::Brep)
     } else if is_iges(head) {
         Some(SourceFormat::Iges)
@@ -36,7 +39,9 @@ fn of_head(head: &[u8]) -> Option<SourceFormat> {
 fn is_iges(head: &[u8]) -> bool {
     head.split(|&b| b == b'\n').take(1).any(|line| {
         let line = line.strip_suffix(b"\r").unwrap_or(line);
-        line.len() == 80 && matches!(line[72], b'S' | b'C') && line[73..].iter().all(|b| b.is_ascii_digit() || *b == b' ')
+        line.len() == 80
+            && matches!(line[72], b'S' | b'C')
+            && line[73..].iter().all(|b| b.is_ascii_digit() || *b == b' ')
     })
 }
 

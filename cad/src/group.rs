@@ -1,8 +1,8 @@
 //! CAD groups: sets of faces, of edges or of vertices, with a tree of samples and a tree of hull boxes each.
 
 use crate::boxes::{Aabb, BoxTree};
-use crate::curve::curve_d2;
 use crate::chart::surface_d2;
+use crate::curve::curve_d2;
 use crate::foot::{CurvePoint, Evaluation, Foot, SurfacePoint};
 use crate::ids::{EdgeId, EntityId, FaceId, VertexId};
 use crate::model::{Geometry, Model};
@@ -40,10 +40,21 @@ pub enum GroupError {
 /// A leaf of the group's tree: entity index in the model and the entity's own leaf.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Member {
-    Face { face: u32, leaf: u32 },
+    Face {
+        face: u32,
+        leaf: u32,
+    },
     /// `owner` is a face of the group that the edge bounds; `None` in groups of edges.
-    Edge { edge: u32, leaf: u32, owner: Option<u32> },
-    Vertex { vertex: u32 },
+    Edge {
+        edge: u32,
+        leaf: u32,
+        owner: Option<u32>,
+    },
+    /// `owner` is a face of the group that the vertex is a corner of; `None` in groups of vertices.
+    Vertex {
+        vertex: u32,
+        owner: Option<u32>,
+    },
 }
 
 /// A set of faces, of edges, or of vertices: the unit of projection. All queries may be made from many threads at once.
@@ -64,7 +75,8 @@ impl std::fmt::Debug for Group {
 }
 
 impl Group {
-    /// Group of faces; their boundary edges are taken along, as ends of trimmed faces. Order and repetition of `ids` do not matter.
+    /// Group of faces; their boundary edges and corners are taken along: the
+    /// closest point of a trimmed face may lie there, off the surface by up to the tolerance of the edge or vertex. Order and repetition of `ids` do not matter.
     ///
     /// # Errors
     /// [`GroupError`]: no ids, ids that the model lacks, nothing to project on.
@@ -84,6 +96,14 @@ impl Group {
                 let owner = Some(id.index() as u32);
                 let leaves = curve.leaves.len() as u32;
                 members.extend((0..leaves).map(|leaf| Member::Edge { edge: edge as u32, leaf, owner }));
+            }
+        }
+        let mut corners = std::collections::BTreeSet::new();
+        for id in &ids {
+            let edges = geometry.faces[id.index()].sides.iter().filter_map(|side| side.edge);
+            for vertex in edges.filter(|&edge| geometry.edges[edge].is_some()).flat_map(|edge| geometry.ends[edge]) {
+                let Some(vertex) = vertex.filter(|vertex| corners.insert(vertex.index())) else { continue };
+                members.push(Member::Vertex { vertex: vertex.index() as u32, owner: Some(id.index() as u32) });
             }
         }
         Self::new(model, ids.into_iter().map(EntityId::Face).collect(), members)
@@ -115,7 +135,7 @@ impl Group {
     pub fn of_vertices(model: &Model, ids: &[VertexId]) -> Result<Self, GroupError> {
         let count = model.vertices().len();
         let ids = sorted(ids, |id| id.index() < count, count)?;
-        let members = ids.iter().map(|id| Member::Vertex { vertex: id.index() as u32 }).collect();
+        let members = ids.iter().map(|id| Member::Vertex { vertex: id.index() as u32, owner: None }).collect();
         Self::new(model, ids.into_iter().map(EntityId::Vertex).collect(), members)
     }
 
@@ -161,7 +181,11 @@ impl Group {
     }
 }
 
-fn sorted<I: Copy + Ord + Into<EntityId>>(ids: &[I], known: impl Fn(I) -> bool, count: usize) -> Result<Vec<I>, GroupError> {
+fn sorted<I: Copy + Ord + Into<EntityId>>(
+    ids: &[I],
+    known: impl Fn(I) -> bool,
+    count: usize,
+) -> Result<Vec<I>, GroupError> {
     let mut ids = ids.to_vec();
     ids.sort_unstable();
     ids.dedup();
@@ -179,7 +203,7 @@ impl Geometry {
             Member::Edge { edge, leaf, .. } => {
                 self.edges[edge as usize].as_ref().map_or(Aabb::EMPTY, |e| e.leaves[leaf as usize].bounds)
             }
-            Member::Vertex { vertex } => Aabb::of_points([self.vertices[vertex as usize]]),
+            Member::Vertex { vertex, .. } => Aabb::of_points([self.vertices[vertex as usize]]),
         }
     }
 
@@ -194,7 +218,7 @@ impl Geometry {
                 let [a, b] = e.leaves[leaf as usize].range;
                 e.curve.d2(0.5 * (a + b))[0]
             }),
-            Member::Vertex { vertex } => self.vertices[vertex as usize],
+            Member::Vertex { vertex, .. } => self.vertices[vertex as usize],
         }
     }
 
@@ -204,7 +228,9 @@ impl Geometry {
                 let face = self.faces.get(id.index())?;
                 Evaluation::Surface(SurfacePoint::new(surface_d2(&face.handle, u, v), face.reversed))
             }
-            EntityId::Edge(id) => Evaluation::Curve(CurvePoint::new(curve_d2(&self.edges.get(id.index())?.as_ref()?.handle, u))),
+            EntityId::Edge(id) => {
+                Evaluation::Curve(CurvePoint::new(curve_d2(&self.edges.get(id.index())?.as_ref()?.handle, u)))
+            }
             EntityId::Vertex(id) => Evaluation::Vertex(*self.vertices.get(id.index())?),
         };
         evaluation.point().is_finite().then_some(evaluation)

@@ -120,10 +120,14 @@ impl Model {
             Some((Answer::Failure(cause), _)) if is_memory(&cause) => {
                 Err(ReadError::OutOfMemory { path: owned(), limit: options.memory_limit })
             }
-            Some((Answer::Failure(cause), _)) if cause.starts_with("no face") => Err(ReadError::Empty { path: owned() }),
+            Some((Answer::Failure(cause), _)) if cause.starts_with("no face") => {
+                Err(ReadError::Empty { path: owned() })
+            }
             Some((Answer::Failure(cause), _)) => Err(refused(cause)),
             // Rust's allocator aborts where C++ throws
-            None if status.signal() == Some(6) => Err(ReadError::OutOfMemory { path: owned(), limit: options.memory_limit }),
+            None if status.signal() == Some(6) => {
+                Err(ReadError::OutOfMemory { path: owned(), limit: options.memory_limit })
+            }
             None => Err(ReadError::Crashed { path: owned(), status }),
         }
     }

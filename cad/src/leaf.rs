@@ -4,6 +4,7 @@ use crate::boxes::Aabb;
 use crate::certificate::Certificate;
 use crate::chart::{Chart, Rect, SurfaceHandle};
 use crate::curve::{Curve, CurveHandle, Hull};
+use crate::slab::Slab;
 use crate::tolerance::{LEAF_DEPTH, LEAF_TURN, POINT, TRIM_DEPTH};
 use crate::trim::Trim;
 use glam::DVec3;
@@ -14,6 +15,7 @@ use opencascade_sys as sys;
 pub(crate) struct FaceLeaf {
     pub(crate) rect: Rect,
     pub(crate) bounds: Aabb,
+    pub(crate) slab: Slab,
     pub(crate) certificate: Option<Certificate>,
     /// The trim passes through: a foot in here must be held against it.
     pub(crate) crossed: bool,
@@ -25,6 +27,7 @@ pub(crate) struct FaceLeaf {
 pub(crate) struct EdgeLeaf {
     pub(crate) range: [f64; 2],
     pub(crate) bounds: Aabb,
+    pub(crate) slab: Slab,
     pub(crate) certificate: Option<Certificate>,
     pub(crate) sound: bool,
 }
@@ -64,7 +67,9 @@ impl FaceLeaf {
         let hull = chart.hull(rect);
         let closed_form = matches!(chart, Chart::Plane { .. } | Chart::Spun { flat: true, .. });
         let certificate = if closed_form { None } else { Certificate::of_surface(chart, &rect, &hull) };
-        Self { rect, bounds: hull.bounds(), certificate, crossed, sound: hull.sound }
+        let jet = chart.d2_within(&rect, rect.center());
+        let slab = Slab::new(&hull, jet[1], jet[2]);
+        Self { rect, bounds: hull.bounds(), slab, certificate, crossed, sound: hull.sound }
     }
 
     /// Direction, 0 or 1, in which the leaf is longer or bends more.
@@ -85,7 +90,8 @@ impl EdgeLeaf {
     pub(crate) fn new(curve: &Curve, range: [f64; 2]) -> Self {
         let hull: Hull = curve.hull(range[0], range[1]);
         let certificate = Certificate::of_curve(curve, range, &hull);
-        Self { range, bounds: hull.bounds(), certificate, sound: hull.sound }
+        let [_, d, dd] = curve.d2(0.5 * (range[0] + range[1]));
+        Self { range, bounds: hull.bounds(), slab: Slab::new(&hull, d, dd), certificate, sound: hull.sound }
     }
 
     pub(crate) fn halves(&self, curve: &Curve) -> [Self; 2] {
@@ -149,7 +155,10 @@ impl FaceGeometry {
     pub(crate) fn bounds(&self) -> Aabb {
         let points = self.leaves.iter().flat_map(|leaf| {
             let steps: u32 = if matches!(self.chart, Chart::Plane { .. }) { 1 } else { 8 };
-            let at = move |k: u32| leaf.rect.at(f64::from(k / (steps + 1)) / f64::from(steps), f64::from(k % (steps + 1)) / f64::from(steps));
+            let at = move |k: u32| {
+                leaf.rect
+                    .at(f64::from(k / (steps + 1)) / f64::from(steps), f64::from(k % (steps + 1)) / f64::from(steps))
+            };
             (0..(steps + 1) * (steps + 1)).map(at).filter(|&p| !leaf.crossed || self.trim.contains(p))
         });
         Aabb::of_points(points.map(|[u, v]| self.chart.d2(u, v)[0]))

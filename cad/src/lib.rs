@@ -19,6 +19,7 @@ mod certificate;
 mod chart;
 mod closed_form;
 mod curve;
+mod finish;
 mod foot;
 mod format;
 mod group;
@@ -31,6 +32,7 @@ mod payload;
 mod reader;
 mod reference;
 mod search;
+mod slab;
 pub mod tolerance;
 mod trim;
 

@@ -173,7 +173,10 @@ pub struct Model {
 impl fmt::Debug for Model {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let counts = [self.faces.len(), self.edges.len(), self.vertices.len()];
-        f.debug_struct("Model").field("path", &self.path).field("faces, edges, vertices", &counts).finish_non_exhaustive()
+        f.debug_struct("Model")
+            .field("path", &self.path)
+            .field("faces, edges, vertices", &counts)
+            .finish_non_exhaustive()
     }
 }
 

@@ -15,6 +15,9 @@ pub(crate) struct Local {
 /// Relative steps below this are taken without asking whether the distance fell: rounding decides there.
 const TRUSTED_STEP: f64 = 1e-7;
 
+/// Growth of the squared distance that rounding alone may cause.
+pub(crate) const ROUNDING: f64 = 1.0 + 1e-14;
+
 /// Newton's step for the surface; a direction held at its bound does not move, and where the Hessian is not
 /// positive definite the Gauss–Newton matrix takes its place.
 fn step(jet: &Jet, x: DVec3, held: impl Fn(usize, f64) -> bool) -> [f64; 2] {
@@ -36,6 +39,12 @@ fn step(jet: &Jet, x: DVec3, held: impl Fn(usize, f64) -> bool) -> [f64; 2] {
     }
 }
 
+/// Where Newton's step leads from `p`, whatever the bounds.
+pub(crate) fn surface_target(jet: &Jet, x: DVec3, p: [f64; 2]) -> [f64; 2] {
+    let [a, b] = step(jet, x, |_, _| false);
+    [p[0] + a, p[1] + b]
+}
+
 /// Nearest point over `rect` as Newton finds it from `start`.
 pub(crate) fn on_surface(chart: &Chart, rect: &Rect, x: DVec3, start: [f64; 2]) -> Local {
     let mut p = rect.clamp(start);
@@ -52,7 +61,7 @@ pub(crate) fn on_surface(chart: &Chart, rect: &Rect, x: DVec3, start: [f64; 2]) 
             next = rect.clamp([p[0] + s[0], p[1] + s[1]]);
             next_jet = chart.d2_within(rect, next);
             next_f = (next_jet[0] - x).length_squared();
-            if next_f <= f || relative(next) < TRUSTED_STEP || !s[0].is_finite() || !s[1].is_finite() {
+            if next_f <= f * ROUNDING || relative(next) < TRUSTED_STEP || !s[0].is_finite() || !s[1].is_finite() {
                 break;
             }
             s = s.map(|d| 0.25 * d);
@@ -62,7 +71,7 @@ pub(crate) fn on_surface(chart: &Chart, rect: &Rect, x: DVec3, start: [f64; 2]) 
             break;
         }
         let converging = moved < TRUSTED_STEP;
-        if next_f <= f || converging {
+        if next_f <= f * ROUNDING || converging {
             (p, jet, f) = (next, next_jet, next_f);
         }
         // convergence is quadratic: the next step would be about the square of this one
@@ -97,7 +106,7 @@ pub(crate) fn on_curve(curve: &Curve, range: [f64; 2], x: DVec3, start: f64) -> 
             next_jet = curve.d2(next);
             next_f = (next_jet[0] - x).length_squared();
             moved = (next - t).abs() / size;
-            if next_f <= f || moved < TRUSTED_STEP || !next_f.is_finite() {
+            if next_f <= f * ROUNDING || moved < TRUSTED_STEP || !next_f.is_finite() {
                 break;
             }
             s *= 0.25;

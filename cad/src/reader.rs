@@ -62,7 +62,12 @@ fn read(path: &Path) -> Result<(Description, Vec<u8>), String> {
         SourceFormat::Brep => sys::Format::Brep,
     };
     let import = sys::read_file(name, asked).map_err(|error| error.to_string())?;
-    let label = |label: sys::Label| RawLabel { kind: label.kind, index: label.index, reference: label.reference, name: label.name };
+    let label = |label: sys::Label| RawLabel {
+        kind: label.kind,
+        index: label.index,
+        reference: label.reference,
+        name: label.name,
+    };
     let description = || Description {
         format,
         unit_name: import.unit(),
@@ -83,7 +88,9 @@ fn rehearse(model: &Model) -> Result<(), String> {
     }
     for face in model.faces() {
         let [u, v] = face.parameters;
-        for (s, t) in [(u[0], v[0]), (u[1], v[0]), (u[0], v[1]), (u[1], v[1]), (0.5 * (u[0] + u[1]), 0.5 * (v[0] + v[1]))] {
+        for (s, t) in
+            [(u[0], v[0]), (u[1], v[0]), (u[0], v[1]), (u[1], v[1]), (0.5 * (u[0] + u[1]), 0.5 * (v[0] + v[1]))]
+        {
             let _ = model.evaluate(face.id.into(), [s, t]);
         }
         if let Ok(group) = Group::of_faces(model, &[face.id]) {

@@ -15,7 +15,9 @@ use thiserror::Error;
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum ReferenceError {
     /// Not of the grammar.
-    #[error("{reference:?} is not a reference: expected name:NAME, step:#N, iges:DN, face:N, edge:N, vertex:N or faces:A|B")]
+    #[error(
+        "{reference:?} is not a reference: expected name:NAME, step:#N, iges:DN, face:N, edge:N, vertex:N or faces:A|B"
+    )]
     Grammar {
         /// The text.
         reference: String,
@@ -83,7 +85,8 @@ impl Model {
 
     fn by_name(&self, reference: &str, name: &str) -> Result<Vec<EntityId>, ReferenceError> {
         let mut groups = self.groups().iter().filter(|group| !group.reference.is_empty() && group.name == name);
-        let found: Vec<EntityId> = self.labelled().filter(|(_, label)| !name.is_empty() && label.name == name).map(|(id, _)| id).collect();
+        let found: Vec<EntityId> =
+            self.labelled().filter(|(_, label)| !name.is_empty() && label.name == name).map(|(id, _)| id).collect();
         match (groups.next(), groups.next(), found.len()) {
             (Some(group), None, 0) => Ok(group.faces.iter().map(|&id| id.into()).collect()),
             (None, _, 1) => Ok(found),
@@ -93,13 +96,17 @@ impl Model {
             }
             (group, _, _) => {
                 let members = group.into_iter().flat_map(|group| group.faces.iter().map(|&id| id.into()));
-                Err(ReferenceError::Ambiguous { reference: reference.to_owned(), candidates: found.into_iter().chain(members).collect() })
+                Err(ReferenceError::Ambiguous {
+                    reference: reference.to_owned(),
+                    candidates: found.into_iter().chain(members).collect(),
+                })
             }
         }
     }
 
     fn by_origin(&self, reference: &str, origin: &str) -> Result<Vec<EntityId>, ReferenceError> {
-        let found: Vec<EntityId> = self.labelled().filter(|(_, label)| label.reference == origin).map(|(id, _)| id).collect();
+        let found: Vec<EntityId> =
+            self.labelled().filter(|(_, label)| label.reference == origin).map(|(id, _)| id).collect();
         match found.len() {
             0 => match self.groups().iter().find(|group| group.reference == origin) {
                 Some(group) => Ok(group.faces.iter().map(|&id| id.into()).collect()),

@@ -8,41 +8,44 @@
 //! The foot on a trimmed face is a minimum inside the trim or a point of a boundary edge, and the edges are leaves of the same tree.
 
 use crate::certificate::Certificate;
-use crate::chart::{Jet, surface_d2};
+use crate::chart::Rect;
 use crate::closed_form;
-use crate::curve::curve_d2;
-use crate::foot::{End, Foot};
+use crate::foot::Foot;
 use crate::group::{Group, Member};
-use crate::ids::{EdgeId, EntityId, FaceId, VertexId};
 use crate::leaf::{EdgeGeometry, EdgeLeaf, FaceGeometry, FaceLeaf};
 use crate::newton::{self, Local};
-use crate::tolerance::{CUT_BUDGET, ORTHOGONAL, POINT, TIE};
+use crate::tolerance::{CUT_BUDGET, POINT, TIE};
 use glam::DVec3;
 
+/// The best foot so far.
 #[derive(Clone, Copy)]
-struct Best {
-    member: usize,
-    parameters: [f64; 2],
-    distance: f64,
+pub(crate) struct Best {
+    pub(crate) member: usize,
+    pub(crate) parameters: [f64; 2],
+    pub(crate) distance: f64,
 }
 
-struct Search<'a> {
-    group: &'a Group,
-    x: DVec3,
-    best: Option<Best>,
+/// One query under way.
+pub(crate) struct Search<'a> {
+    pub(crate) group: &'a Group,
+    pub(crate) x: DVec3,
+    pub(crate) best: Option<Best>,
     budget: usize,
-    proven: bool,
+    pub(crate) proven: bool,
+    /// Leaves of faces that must be cut, with their first local minimum: they wait until the bound is as small as the others make it.
+    deferred: Vec<(usize, Local)>,
 }
 
 impl Group {
     /// The closest point of the group to `x`, trims respected. `hint` is the foot of an earlier query to this group nearby: it
     /// makes the query faster, never wrong. A query point that is not finite gives a foot at infinite distance.
     pub fn closest(&self, x: DVec3, hint: Option<&Foot>) -> Foot {
-        let mut search = Search { group: self, x, best: None, budget: CUT_BUDGET, proven: true };
+        let mut search = Search { group: self, x, best: None, budget: CUT_BUDGET, proven: true, deferred: Vec::new() };
         let hinted = hint.map(|foot| foot.leaf as usize).filter(|&leaf| leaf < self.members.len());
         if x.is_finite() {
             let seed = hinted.unwrap_or_else(|| self.seed(x));
-            search.visit(seed, hint.filter(|_| hinted.is_some()).map(|foot| foot.parameters));
+            let start = hint.filter(|_| hinted.is_some()).map(|foot| foot.parameters);
+            search.visit(seed, start.filter(|p| p[0].is_finite() && p[1].is_finite()));
             self.boxes.visit(x, search.bound(), |leaf, bound| {
                 if leaf != seed {
                     search.visit(leaf, None);
@@ -51,13 +54,14 @@ impl Group {
                     bound
                 }
             });
+            search.cut_deferred();
         }
         search.finish()
     }
 }
 
 impl Search<'_> {
-    fn tie(&self) -> f64 {
+    pub(crate) fn tie(&self) -> f64 {
         TIE * self.group.diagonal
     }
 
@@ -88,7 +92,7 @@ impl Search<'_> {
                     self.visit_edge(index, edge, &edge.leaves[leaf as usize]);
                 }
             }
-            Member::Vertex { vertex } => {
+            Member::Vertex { vertex, .. } => {
                 let distance_squared = geometry.vertices[vertex as usize].distance_squared(self.x);
                 self.offer(index, Local { parameters: [0.0; 2], distance_squared });
             }
@@ -106,6 +110,9 @@ impl Search<'_> {
     }
 
     fn visit_face(&mut self, index: usize, face: &FaceGeometry, leaf: &FaceLeaf, start: Option<[f64; 2]>) {
+        if leaf.slab.distance_squared(self.x) > self.bound() {
+            return;
+        }
         if let Some(local) = closed_form::nearest(&face.chart, &leaf.rect, self.x) {
             return self.offer_on_face(index, face, leaf, local);
         }
@@ -113,21 +120,48 @@ impl Search<'_> {
         let local = newton::on_surface(&face.chart, &leaf.rect, self.x, start.unwrap_or(leaf.rect.center()));
         self.offer_on_face(index, face, leaf, local);
         if !self.is_decided(leaf.certificate.as_ref()) {
-            self.cut_face(index, face, leaf);
+            self.deferred.push((index, local));
         }
     }
 
+    fn cut_deferred(&mut self) {
+        let group = self.group;
+        for (index, local) in std::mem::take(&mut self.deferred) {
+            let Member::Face { face, leaf } = group.members[index] else { continue };
+            let face = &group.geometry.faces[face as usize];
+            let leaf = &face.leaves[leaf as usize];
+            if leaf.slab.distance_squared(self.x) <= self.bound() && !self.is_beyond(face, leaf.rect, local) {
+                self.cut_face(index, face, leaf, local);
+            }
+        }
+    }
+
+    /// Whether no point of `rect` is nearer than the foot so far, or than its own `local` minimum: its hull is beyond a plane there.
+    fn is_beyond(&self, face: &FaceGeometry, rect: Rect, local: Local) -> bool {
+        let Some(best) = self.best else { return false };
+        let p = face.chart.d2(local.parameters[0], local.parameters[1])[0];
+        let gain = local.distance_squared.sqrt() - best.distance;
+        face.chart.hull(rect).is_beyond(self.x, p, gain.max(0.0) + self.tie())
+    }
+
     /// Cuts a leaf until each part is too far away, or has one minimum only, or is a point.
-    fn cut_face(&mut self, index: usize, face: &FaceGeometry, leaf: &FaceLeaf) {
-        let mut parts = Vec::from(leaf.rect.halves(leaf.direction(&face.chart)));
+    fn cut_face(&mut self, index: usize, face: &FaceGeometry, leaf: &FaceLeaf, local: Local) {
+        let mut parts = Vec::new();
+        self.cut_part(face, leaf, local, &mut parts);
         while let Some(rect) = parts.pop() {
-            let part = FaceLeaf::new(&face.chart, rect, leaf.crossed);
-            if part.bounds.distance_squared(self.x) > self.bound() {
+            let hull = face.chart.hull(rect);
+            if hull.bounds().distance_squared(self.x) > self.bound() {
                 continue;
             }
             let local = newton::on_surface(&face.chart, &rect, self.x, rect.center());
             self.offer_on_face(index, face, leaf, local);
-            if self.is_decided(part.certificate.as_ref()) || part.bounds.diagonal() < POINT * self.group.diagonal {
+            if self.is_beyond(face, rect, local) {
+                continue;
+            }
+            let part = FaceLeaf::new(&face.chart, rect, leaf.crossed);
+            let far = part.slab.distance_squared(self.x) > self.bound();
+            if far || self.is_decided(part.certificate.as_ref()) || part.bounds.diagonal() < POINT * self.group.diagonal
+            {
                 continue;
             }
             if self.budget == 0 {
@@ -135,17 +169,33 @@ impl Search<'_> {
                 return;
             }
             self.budget -= 1;
-            let mut halves = rect.halves(part.direction(&face.chart)).map(|half| (face.chart.hull(half).bounds().distance_squared(self.x), half));
-            halves.sort_by(|a, b| b.0.total_cmp(&a.0));
-            parts.extend(halves.map(|(_, half)| half));
+            self.cut_part(face, &part, local, &mut parts);
         }
     }
 
+    /// Pushes the parts of a leaf, nearest last: four around a foot inside, else two halves.
+    fn cut_part(&self, face: &FaceGeometry, part: &FaceLeaf, local: Local, parts: &mut Vec<Rect>) {
+        let ([u, v], [du, dv]) = (local.parameters, part.rect.size());
+        let inside = |t: f64, range: [f64; 2], size: f64| t > range[0] + 0.01 * size && t < range[1] - 0.01 * size;
+        if inside(u, part.rect.u, du) && inside(v, part.rect.v, dv) {
+            parts.extend(part.rect.quarters([u, v]));
+            return;
+        }
+        let distance = |rect: Rect| face.chart.hull(rect).bounds().distance_squared(self.x);
+        let mut halves = part.rect.halves(part.direction(&face.chart)).map(|half| (distance(half), half));
+        halves.sort_by(|a, b| b.0.total_cmp(&a.0));
+        parts.extend(halves.map(|(_, half)| half));
+    }
+
     fn visit_edge(&mut self, index: usize, edge: &EdgeGeometry, leaf: &EdgeLeaf) {
+        if leaf.slab.distance_squared(self.x) > self.bound() {
+            return;
+        }
         self.proven &= leaf.sound;
-        let mut parts: Vec<EdgeLeaf> = vec![leaf.clone()];
-        while let Some(part) = parts.pop() {
-            if part.bounds.distance_squared(self.x) > self.bound() {
+        let mut parts: Vec<EdgeLeaf> = Vec::new();
+        let mut next = Some(leaf.clone());
+        while let Some(part) = next.take().or_else(|| parts.pop()) {
+            if part.slab.distance_squared(self.x) > self.bound() {
                 continue;
             }
             let [a, b] = part.range;
@@ -160,135 +210,5 @@ impl Search<'_> {
             self.budget -= 1;
             parts.extend(part.halves(&edge.curve));
         }
-    }
-
-    /// The winner, evaluated by OCCT.
-    fn finish(self) -> Foot {
-        let Some(best) = self.best else { return self.nowhere() };
-        let geometry = &self.group.geometry;
-        match self.group.members[best.member] {
-            Member::Face { face, leaf } => {
-                let geometry = &geometry.faces[face as usize];
-                let (parameters, jet) = polish_surface(geometry, &geometry.leaves[leaf as usize], self.x, best.parameters);
-                let end = self.end_on_face(geometry, &geometry.leaves[leaf as usize], parameters, &jet);
-                self.foot(best, FaceId::new(face as usize).into(), parameters, jet[0], end)
-            }
-            Member::Edge { edge, owner, .. } => self.finish_edge(best, edge as usize, owner.map(|face| face as usize)),
-            Member::Vertex { vertex } => {
-                let id = VertexId::new(vertex as usize);
-                self.foot(best, id.into(), [0.0; 2], geometry.vertices[vertex as usize], End::OnEnd(id))
-            }
-        }
-    }
-
-    fn foot(&self, best: Best, entity: EntityId, parameters: [f64; 2], point: DVec3, end: End) -> Foot {
-        let distance = point.distance(self.x);
-        Foot { point, entity, parameters, distance, end, proven: self.proven, leaf: best.member as u32 }
-    }
-
-    fn nowhere(&self) -> Foot {
-        let entity = self.group.entities()[0];
-        let end = End::Stalled { residual: f64::INFINITY };
-        Foot { point: DVec3::NAN, entity, parameters: [f64::NAN; 2], distance: f64::INFINITY, end, proven: false, leaf: 0 }
-    }
-
-    fn residual_limit(&self, distance: f64) -> f64 {
-        ORTHOGONAL * (self.group.diagonal + distance)
-    }
-
-    fn end_on_face(&self, face: &FaceGeometry, leaf: &FaceLeaf, [u, v]: [f64; 2], jet: &Jet) -> End {
-        let r = jet[0] - self.x;
-        let residual = tangential(r, jet[1]).max(tangential(r, jet[2]));
-        let at = |range: [f64; 2], t: f64| t <= range[0] || t >= range[1];
-        if residual <= self.residual_limit(r.length()) {
-            End::Interior
-        } else if at(leaf.rect.u, u) || at(leaf.rect.v, v) || at(face.rect.u, u) || at(face.rect.v, v) {
-            End::OnCrease
-        } else {
-            End::Stalled { residual }
-        }
-    }
-
-    fn finish_edge(&self, best: Best, index: usize, owner: Option<usize>) -> Foot {
-        let geometry = &self.group.geometry;
-        let id = EdgeId::new(index);
-        let Some(edge) = &geometry.edges[index] else { return self.nowhere() };
-        let (t, jet) = polish_curve(edge, self.x, best.parameters[0]);
-        if let Some(face) = owner {
-            let parameters = geometry.faces[face].parameters_on(index, edge.range, t, jet[0]);
-            return self.foot(best, FaceId::new(face).into(), parameters, jet[0], End::OnTrim(id));
-        }
-        let r = jet[0] - self.x;
-        let residual = tangential(r, jet[1]);
-        let ends = geometry.ends[index];
-        let end = if residual <= self.residual_limit(r.length()) {
-            End::Interior
-        } else if let (true, Some(start)) = (t <= edge.range[0], ends[0]) {
-            End::OnEnd(start)
-        } else if let (true, Some(end)) = (t >= edge.range[1], ends[1]) {
-            End::OnEnd(end)
-        } else {
-            let at_knot = edge.leaves.iter().any(|leaf| leaf.range.contains(&t));
-            if at_knot { End::OnCrease } else { End::Stalled { residual } }
-        };
-        self.foot(best, id.into(), [t, 0.0], jet[0], end)
-    }
-}
-
-/// Length of the part of `r` along `d`; 0 where `d` vanishes.
-fn tangential(r: DVec3, d: DVec3) -> f64 {
-    let length = d.length();
-    if length > 0.0 { (r.dot(d) / length).abs() } else { 0.0 }
-}
-
-/// Newton's last step on OCCT's own surface, taken only if OCCT finds it nearer.
-fn polish_surface(face: &FaceGeometry, leaf: &FaceLeaf, x: DVec3, [u, v]: [f64; 2]) -> ([f64; 2], Jet) {
-    let jet = surface_d2(&face.handle, u, v);
-    let inside = |t: f64, range: [f64; 2]| t > range[0] && t < range[1];
-    if !(inside(u, leaf.rect.u) && inside(v, leaf.rect.v)) {
-        return ([u, v], jet);
-    }
-    let r = jet[0] - x;
-    let h = [
-        jet[1].length_squared() + r.dot(jet[3]),
-        jet[1].dot(jet[2]) + r.dot(jet[4]),
-        jet[2].length_squared() + r.dot(jet[5]),
-    ];
-    let g = [r.dot(jet[1]), r.dot(jet[2])];
-    let d = (h[0] * h[2] - h[1] * h[1]).recip();
-    let next = leaf.rect.clamp([u + (h[1] * g[1] - h[2] * g[0]) * d, v + (h[1] * g[0] - h[0] * g[1]) * d]);
-    if !next[0].is_finite() || !next[1].is_finite() || (leaf.crossed && !face.trim.contains(next)) {
-        return ([u, v], jet);
-    }
-    let polished = surface_d2(&face.handle, next[0], next[1]);
-    if polished[0].distance_squared(x) < r.length_squared() { (next, polished) } else { ([u, v], jet) }
-}
-
-fn polish_curve(edge: &EdgeGeometry, x: DVec3, t: f64) -> (f64, [DVec3; 3]) {
-    let jet = curve_d2(&edge.handle, t);
-    let r = jet[0] - x;
-    let next = (t - r.dot(jet[1]) / (jet[1].length_squared() + r.dot(jet[2]))).clamp(edge.range[0], edge.range[1]);
-    let polished = curve_d2(&edge.handle, next);
-    if polished[0].distance_squared(x) < r.length_squared() { (next, polished) } else { (t, jet) }
-}
-
-impl FaceGeometry {
-    /// Parameters on the surface of the point of a boundary edge at `t`; of the two sides of a seam, the first.
-    pub(crate) fn parameters_on(&self, edge: usize, range: [f64; 2], t: f64, point: DVec3) -> [f64; 2] {
-        let sides = self.sides.iter().filter(|side| side.edge == Some(edge));
-        let mut best = ([f64::NAN; 2], f64::INFINITY);
-        for side in sides {
-            let fraction = (t - range[0]) / (range[1] - range[0]);
-            let along = side.range[0] + fraction * (side.range[1] - side.range[0]);
-            let mut jet = [0.0; 4];
-            if side.pcurve.d1(if side.range == range { t } else { along }, &mut jet).is_err() {
-                continue;
-            }
-            let distance = self.chart.d2(jet[0], jet[1])[0].distance(point);
-            if best.1.is_infinite() || distance < 0.5 * best.1 {
-                best = ([jet[0], jet[1]], distance);
-            }
-        }
-        best.0
     }
 }

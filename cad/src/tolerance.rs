@@ -16,6 +16,12 @@ pub const NEWTON_STEP: f64 = 1e-14;
 /// Newton steps for one leaf; certified leaves take 3 to 6.
 pub const NEWTON_LIMIT: usize = 40;
 
+/// How far, in sizes of the leaf, polishing may leave it.
+pub const LEAF_MARGIN: f64 = 1e-5;
+
+/// Newton steps on OCCT's own surface after the search.
+pub const POLISH_LIMIT: usize = 4;
+
 /// Cuts of leaves that one query may spend to prove its answer; beyond it the foot is reported as not proven.
 pub const CUT_BUDGET: usize = 400;
 
@@ -23,7 +29,7 @@ pub const CUT_BUDGET: usize = 400;
 pub const LEAF_TURN: f64 = 0.35;
 
 /// Levels of cutting when a model is built.
-pub const LEAF_DEPTH: u32 = 12;
+pub const LEAF_DEPTH: u32 = 8;
 
 /// Levels of cutting of leaves that a trim crosses, when a model is built.
 pub const TRIM_DEPTH: u32 = 4;

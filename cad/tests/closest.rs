@@ -30,7 +30,7 @@ fn sampled(model: &Model, faces: &[FaceId], inside: &dyn Fn(FaceId, DVec3) -> bo
 
 fn check(group: &Group, model: &Model, foot: &Foot, x: DVec3) {
     assert!((foot.point.distance(x) - foot.distance).abs() <= 1e-15 * model.diagonal());
-    if !matches!(foot.end, End::OnTrim(_)) {
+    if !matches!(foot.end, End::OnTrim(_) | End::OnEnd(_)) {
         let again = group.evaluate(foot.entity, foot.parameters).unwrap().point();
         assert!(again == foot.point, "the foot is OCCT's own point");
     }
@@ -44,7 +44,13 @@ fn torus_by_analysis() {
         let group = Group::of_faces(&model, &[face.id]).unwrap();
         let (center, size) = (face.bounds.center(), face.bounds.max - face.bounds.min);
         // the axis is the short direction of the box
-        let axis = if size.x < size.y.min(size.z) { 0 } else if size.y < size.z { 1 } else { 2 };
+        let axis = if size.x < size.y.min(size.z) {
+            0
+        } else if size.y < size.z {
+            1
+        } else {
+            2
+        };
         let minor = 0.5 * size[axis];
         let major = 0.5 * size[(axis + 1) % 3] - minor;
         let mut random = Random(7);
@@ -78,7 +84,12 @@ fn feet_are_not_farther_than_samples() {
                 check(&group, &model, &foot, x);
                 unproven += usize::from(!foot.proven);
                 let best = sampled(&model, &[face.id], &on, 30, x);
-                assert!(foot.distance <= best + 1e-12 * model.diagonal(), "{name} {}: {} > {best} at {x}", face.id, foot.distance);
+                assert!(
+                    foot.distance <= best + 1e-12 * model.diagonal(),
+                    "{name} {}: {} > {best} at {x}",
+                    face.id,
+                    foot.distance
+                );
             }
             assert!(unproven < 4, "{name} {}: {unproven} of 40 not proven", face.id);
         }
@@ -95,7 +106,9 @@ fn points_on_the_surface_are_their_own_feet() {
         for i in 0..=16 {
             for j in 0..=16 {
                 let at = |r: [f64; 2], k: i32| r[0] + (r[1] - r[0]) * f64::from(k) / 16.0;
-                let Evaluation::Surface(s) = model.evaluate(face.id.into(), [at(u, i), at(v, j)]).unwrap() else { panic!() };
+                let Evaluation::Surface(s) = model.evaluate(face.id.into(), [at(u, i), at(v, j)]).unwrap() else {
+                    panic!()
+                };
                 let foot = group.closest(s.point, None);
                 assert!(foot.distance < 1e-11 * model.diagonal(), "{} {} {}: {foot:?}", face.id, i, j);
             }
@@ -130,7 +143,13 @@ fn edges_against_samples_and_ends() {
             check(&group, &model, &foot, x);
             let [a, b] = edge.parameters;
             let best = (0..=400)
-                .map(|k| group.evaluate(edge.id.into(), [a + (b - a) * f64::from(k) / 400.0, 0.0]).unwrap().point().distance(x))
+                .map(|k| {
+                    group
+                        .evaluate(edge.id.into(), [a + (b - a) * f64::from(k) / 400.0, 0.0])
+                        .unwrap()
+                        .point()
+                        .distance(x)
+                })
                 .fold(f64::INFINITY, f64::min);
             assert!(foot.distance <= best + 1e-13 * model.diagonal(), "{}: {} > {best}", edge.id, foot.distance);
             assert!(foot.proven, "{}", edge.id);

@@ -30,6 +30,7 @@
 #include <Transfer_TransientProcess.hxx>
 #include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
+#include <cctype>
 #include <map>
 #include <set>
 #include <sstream>
@@ -127,20 +128,33 @@ std::string step_id(const Handle(StepData_StepModel)& model, const Handle(Standa
   return "step:#" + std::to_string(id > 0 ? id : model->Number(entity));
 }
 
+// 0 for a name that is not known.
+double millimetres_of(std::string name) {
+  for (char& c : name) c = char(std::tolower(static_cast<unsigned char>(c)));
+  static const std::map<std::string, double> known = {
+      {"metre", 1000}, {"meter", 1000}, {"m", 1000}, {"millimetre", 1}, {"millimeter", 1}, {"mm", 1},
+      {"centimetre", 10}, {"centimeter", 10}, {"cm", 10}, {"decimetre", 100}, {"decimeter", 100},
+      {"micrometre", 1e-3}, {"micrometer", 1e-3}, {"micron", 1e-3}, {"nanometre", 1e-6}, {"kilometre", 1e6}, {"kilometer", 1e6},
+      {"inch", 25.4}, {"in", 25.4}, {"inches", 25.4}, {"foot", 304.8}, {"ft", 304.8}, {"feet", 304.8}, {"mil", 0.0254}, {"mile", 1609344}, {"yard", 914.4}};
+  const auto it = known.find(name);
+  return it == known.end() ? 0 : it->second;
+}
+
 void read_step_unit(const Handle(StepData_StepModel)& model, STEPControl_Reader& reader, Source& source) {
   TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
   reader.FileUnits(lengths, angles, solid_angles);
   if (lengths.Length() > 0) source.unit = lengths(1).ToCString();
-  double factor = 0;
+  source.millimetres = millimetres_of(source.unit);
+  if (source.millimetres > 0) return;
+  // a unit that only its conversion factor describes
   for (int i = 1; i <= model->NbEntities(); i++) {
     auto context = Handle(StepRepr_GlobalUnitAssignedContext)::DownCast(model->Value(i));
     if (context.IsNull()) continue;
     STEPConstruct_UnitContext units;
     units.ComputeFactors(context);
-    if (!units.LengthDone()) continue;
-    if (factor == 0) factor = units.LengthFactor();
+    if (units.LengthDone() && units.LengthFactor() > 0) source.millimetres = units.LengthFactor();
   }
-  if (factor > 0) source.millimetres = factor;
+  if (source.millimetres <= 0) throw std::runtime_error("unknown unit of length: " + source.unit);
 }
 
 void read_step(const std::string& path, Source& source) {

@@ -71,7 +71,12 @@ std::unique_ptr<Pcurve> Loops::pcurve(size_t i) const {
 Shape::Shape(const TopoDS_Shape& shape) : shape_(shape) {
   TopExp::MapShapes(shape, TopAbs_FACE, faces_);
   TopExp::MapShapes(shape, TopAbs_EDGE, edges_);
-  TopExp::MapShapes(shape, TopAbs_VERTEX, vertices_);
+  // points that bound no edge (construction points of STEP files) are none of the model's vertices
+  TopTools_IndexedMapOfShape all, used;
+  TopExp::MapShapes(shape, TopAbs_VERTEX, all);
+  for (int i = 1; i <= edges_.Extent(); i++) TopExp::MapShapes(edges_(i), TopAbs_VERTEX, used);
+  for (int i = 1; i <= all.Extent(); i++)
+    if (used.Contains(all(i))) vertices_.Add(all(i));
 }
 
 FaceData Shape::face(size_t i) const {

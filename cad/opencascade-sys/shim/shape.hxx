@@ -18,7 +18,7 @@ struct Coedge;
 class Loops {
 public:
   explicit Loops(const TopoDS_Face& face, const TopTools_IndexedMapOfShape& edges);
-  size_t len() const { return edges_.size(); }
+  size_t count() const { return edges_.size(); }
   Coedge coedge(size_t i) const;
   std::unique_ptr<Pcurve> pcurve(size_t i) const;
 

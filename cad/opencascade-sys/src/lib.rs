@@ -133,7 +133,7 @@ mod ffi {
         fn d1(self: &Pcurve, t: f64, jet: &mut [f64; 4]) -> Result<()>;
         fn spans(self: &Pcurve) -> Result<Spans>;
 
-        fn len(self: &Loops) -> usize;
+        fn count(self: &Loops) -> usize;
         fn coedge(self: &Loops, i: usize) -> Result<Coedge>;
         fn pcurve(self: &Loops, i: usize) -> Result<UniquePtr<Pcurve>>;
 
@@ -160,8 +160,8 @@ mod ffi {
 
 pub use cxx::{Exception, UniquePtr};
 pub use ffi::{
-    Coedge, Curve, EdgeData, FaceData, Form, Format, Import, Kind, Label, Loops, Pcurve, Shape, Spans, Surface, VertexData,
-    read_file, shape_from_bytes,
+    Coedge, Curve, EdgeData, FaceData, Form, Format, Import, Kind, Label, Loops, Pcurve, Shape, Spans, Surface,
+    VertexData, read_file, shape_from_bytes,
 };
 
 // SAFETY (the three types below): each holds one `Handle(Geom_*)` or `Handle(Geom2d_*)` that is never replaced or edited after

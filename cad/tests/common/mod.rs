@@ -1,5 +1,5 @@
 //! What the tests share.
-#![allow(dead_code)] // each test program uses its part
+#![allow(dead_code, unreachable_pub)] // each test program uses its part
 
 use cad::{Model, ReadOptions};
 use glam::DVec3;

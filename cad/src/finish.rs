@@ -1,0 +1,238 @@
+//! The end of a search: the winner on OCCT's own geometry, polished, and how it ended.
+
+use crate::chart::{Jet, Rect, surface_d2};
+use crate::curve::curve_d2;
+use crate::foot::{End, Foot};
+use crate::group::Member;
+use crate::ids::{EdgeId, EntityId, FaceId, VertexId};
+use crate::leaf::{EdgeGeometry, EdgeLeaf, FaceGeometry, FaceLeaf, Side};
+use crate::model::Geometry;
+use crate::newton::{self, ROUNDING};
+use crate::search::{Best, Search};
+use crate::tolerance::{LEAF_MARGIN, ORTHOGONAL, POLISH_LIMIT};
+use glam::DVec3;
+
+/// Golden section, and sections enough for rounding to end the search.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+const GOLDEN_STEPS: usize = 60;
+
+impl Search<'_> {
+    /// The winner, evaluated by OCCT.
+    pub(crate) fn finish(self) -> Foot {
+        let Some(best) = self.best else { return self.nowhere() };
+        let geometry = &self.group.geometry;
+        match self.group.members[best.member] {
+            Member::Face { face, leaf } => {
+                let geometry = &geometry.faces[face as usize];
+                let (parameters, jet) =
+                    polish_surface(geometry, &geometry.leaves[leaf as usize], self.x, best.parameters);
+                let end = self.end_on_face(geometry, &geometry.leaves[leaf as usize], parameters, &jet);
+                let at_trim = matches!(end, End::Stalled { .. }) && geometry.leaves[leaf as usize].crossed;
+                let slid = if at_trim { self.slide_to_trim(best, face as usize, jet[0]) } else { None };
+                if let Some(foot) = slid {
+                    return foot;
+                }
+                self.foot(best, FaceId::new(face as usize).into(), parameters, jet[0], end)
+            }
+            Member::Edge { edge, owner, .. } => self.finish_edge(best, edge as usize, owner.map(|face| face as usize)),
+            Member::Vertex { vertex, owner } => {
+                let id = VertexId::new(vertex as usize);
+                let (entity, parameters) = match owner {
+                    Some(face) => (FaceId::new(face as usize).into(), geometry.corner_parameters(face as usize, id)),
+                    None => (id.into(), [0.0; 2]),
+                };
+                self.foot(best, entity, parameters, geometry.vertices[vertex as usize], End::OnEnd(id))
+            }
+        }
+    }
+
+    fn foot(&self, best: Best, entity: EntityId, parameters: [f64; 2], point: DVec3, end: End) -> Foot {
+        let distance = point.distance(self.x);
+        Foot { point, entity, parameters, distance, end, proven: self.proven, leaf: best.member as u32 }
+    }
+
+    fn nowhere(&self) -> Foot {
+        let entity = self.group.entities()[0];
+        let end = End::Stalled { residual: f64::INFINITY };
+        Foot {
+            point: DVec3::NAN,
+            entity,
+            parameters: [f64::NAN; 2],
+            distance: f64::INFINITY,
+            end,
+            proven: false,
+            leaf: 0,
+        }
+    }
+
+    fn residual_limit(&self, distance: f64) -> f64 {
+        ORTHOGONAL * (self.group.diagonal + distance)
+    }
+
+    fn end_on_face(&self, face: &FaceGeometry, leaf: &FaceLeaf, [u, v]: [f64; 2], jet: &Jet) -> End {
+        let r = jet[0] - self.x;
+        let residual = residual(jet, self.x);
+        let at = |range: [f64; 2], t: f64| t <= range[0] || t >= range[1];
+        if residual <= self.residual_limit(r.length()) {
+            End::Interior
+        } else if at(leaf.rect.u, u) || at(leaf.rect.v, v) || at(face.rect.u, u) || at(face.rect.v, v) {
+            End::OnCrease
+        } else {
+            End::Stalled { residual }
+        }
+    }
+
+    /// Where the curve of a boundary edge lies beside its pcurve on the surface (within the edge's tolerance), a point of the
+    /// surface at the trim can be nearer than the curve. Finds the nearest point of the surface along the pcurve of the edge that is nearest to `near`.
+    fn slide_to_trim(&self, best: Best, index: usize, near: DVec3) -> Option<Foot> {
+        let geometry = &self.group.geometry;
+        let face = &geometry.faces[index];
+        let nearest = |side: &Side| {
+            let edge = geometry.edges[side.edge?].as_ref()?;
+            let on_leaf = |leaf: &EdgeLeaf| {
+                newton::on_curve(&edge.curve, leaf.range, near, 0.5 * (leaf.range[0] + leaf.range[1]))
+            };
+            let local =
+                edge.leaves.iter().map(on_leaf).min_by(|a, b| a.distance_squared.total_cmp(&b.distance_squared))?;
+            let fraction = (local.parameters[0] - edge.range[0]) / (edge.range[1] - edge.range[0]);
+            Some((local.distance_squared, side.range[0] + fraction * (side.range[1] - side.range[0])))
+        };
+        let sides = face.sides.iter().filter_map(|side| Some((nearest(side)?, side)));
+        let ((_, t), side) = sides.min_by(|a, b| a.0.0.total_cmp(&b.0.0))?;
+        let parameters = side.nearest_on(face, self.x, t)?;
+        let point = surface_d2(&face.handle, parameters[0], parameters[1])[0];
+        let end = End::OnTrim(EdgeId::new(side.edge?));
+        (point.distance(self.x) <= best.distance + self.tie())
+            .then(|| self.foot(best, FaceId::new(index).into(), parameters, point, end))
+    }
+
+    fn finish_edge(&self, best: Best, index: usize, owner: Option<usize>) -> Foot {
+        let geometry = &self.group.geometry;
+        let id = EdgeId::new(index);
+        let Some(edge) = &geometry.edges[index] else { return self.nowhere() };
+        let (t, jet) = polish_curve(edge, self.x, best.parameters[0]);
+        if let Some(face) = owner {
+            let parameters = geometry.faces[face].parameters_on(index, edge.range, t, jet[0]);
+            return self.foot(best, FaceId::new(face).into(), parameters, jet[0], End::OnTrim(id));
+        }
+        let r = jet[0] - self.x;
+        let residual = tangential(r, jet[1]);
+        let ends = geometry.ends[index];
+        let end = if residual <= self.residual_limit(r.length()) {
+            End::Interior
+        } else if let (true, Some(start)) = (t <= edge.range[0], ends[0]) {
+            End::OnEnd(start)
+        } else if let (true, Some(end)) = (t >= edge.range[1], ends[1]) {
+            End::OnEnd(end)
+        } else {
+            let at_knot = edge.leaves.iter().any(|leaf| leaf.range.contains(&t));
+            if at_knot { End::OnCrease } else { End::Stalled { residual } }
+        };
+        self.foot(best, id.into(), [t, 0.0], jet[0], end)
+    }
+}
+
+/// Length of the part of `r` along `d`; 0 where `d` vanishes.
+fn tangential(r: DVec3, d: DVec3) -> f64 {
+    let length = d.length();
+    if length > 0.0 { (r.dot(d) / length).abs() } else { 0.0 }
+}
+
+/// Newton's last steps on OCCT's own surface, taken while they make the residual smaller.
+fn polish_surface(face: &FaceGeometry, leaf: &FaceLeaf, x: DVec3, mut p: [f64; 2]) -> ([f64; 2], Jet) {
+    let mut jet = surface_d2(&face.handle, p[0], p[1]);
+    let window = around(face, leaf);
+    for _ in 0..POLISH_LIMIT {
+        let next = window.clamp(newton::surface_target(&jet, x, p));
+        if next.iter().any(|t| !t.is_finite()) || (leaf.crossed && !face.trim.contains(next)) {
+            break;
+        }
+        let polished = surface_d2(&face.handle, next[0], next[1]);
+        let farther = polished[0].distance_squared(x) > jet[0].distance_squared(x) * ROUNDING;
+        if farther || residual(&polished, x) >= residual(&jet, x) {
+            break;
+        }
+        (p, jet) = (next, polished);
+    }
+    (p, jet)
+}
+
+/// A leaf's range and a little of its neighbours: of two leaves that tie, the one without the foot may have won.
+fn around(face: &FaceGeometry, leaf: &FaceLeaf) -> Rect {
+    let [du, dv] = leaf.rect.size().map(|size| LEAF_MARGIN * size);
+    let widen = |r: [f64; 2], d: f64, all: [f64; 2]| [(r[0] - d).max(all[0]), (r[1] + d).min(all[1])];
+    Rect { u: widen(leaf.rect.u, du, face.rect.u), v: widen(leaf.rect.v, dv, face.rect.v) }
+}
+
+/// Length of the larger tangential part of the line from `x`.
+fn residual(jet: &Jet, x: DVec3) -> f64 {
+    let r = jet[0] - x;
+    tangential(r, jet[1]).max(tangential(r, jet[2]))
+}
+
+fn polish_curve(edge: &EdgeGeometry, x: DVec3, t: f64) -> (f64, [DVec3; 3]) {
+    let jet = curve_d2(&edge.handle, t);
+    let r = jet[0] - x;
+    let next = (t - r.dot(jet[1]) / (jet[1].length_squared() + r.dot(jet[2]))).clamp(edge.range[0], edge.range[1]);
+    let polished = curve_d2(&edge.handle, next);
+    let s = polished[0] - x;
+    let better = tangential(s, polished[1]) < tangential(r, jet[1]);
+    if better && s.length_squared() <= r.length_squared() * ROUNDING { (next, polished) } else { (t, jet) }
+}
+
+impl Geometry {
+    /// Parameters on a face of one of its corners: the end of a pcurve there.
+    fn corner_parameters(&self, face: usize, vertex: VertexId) -> [f64; 2] {
+        let sides = self.faces[face].sides.iter().filter_map(|side| side.edge);
+        let ends = sides.filter_map(|edge| {
+            let end = self.ends[edge].iter().position(|&end| end == Some(vertex))?;
+            Some((edge, self.edges[edge].as_ref()?.range, end))
+        });
+        let point = self.vertices[vertex.index()];
+        let parameters = ends.map(|(edge, range, end)| self.faces[face].parameters_on(edge, range, range[end], point));
+        parameters.into_iter().find(|p| p[0].is_finite()).unwrap_or([f64::NAN; 2])
+    }
+}
+
+impl Side {
+    /// Parameters of the point of the surface along the pcurve that is nearest to `x`, by golden sections around `t`.
+    fn nearest_on(&self, face: &FaceGeometry, x: DVec3, t: f64) -> Option<[f64; 2]> {
+        let at = |t: f64| {
+            let mut jet = [0.0; 4];
+            self.pcurve.d1(t, &mut jet).ok().map(|()| [jet[0], jet[1]])
+        };
+        let distance = |t: f64| at(t).map_or(f64::INFINITY, |[u, v]| face.chart.d2(u, v)[0].distance_squared(x));
+        let reach = 0.02 * (self.range[1] - self.range[0]);
+        let (mut low, mut high) = ((t - reach).max(self.range[0]), (t + reach).min(self.range[1]));
+        for _ in 0..GOLDEN_STEPS {
+            let (a, b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
+            if distance(a) <= distance(b) {
+                high = b;
+            } else {
+                low = a;
+            }
+        }
+        at(0.5 * (low + high))
+    }
+}
+
+impl FaceGeometry {
+    /// Parameters on the surface of the point of a boundary edge at `t`; of the two sides of a seam, the first.
+    pub(crate) fn parameters_on(&self, edge: usize, range: [f64; 2], t: f64, point: DVec3) -> [f64; 2] {
+        let sides = self.sides.iter().filter(|side| side.edge == Some(edge));
+        let mut best = ([f64::NAN; 2], f64::INFINITY);
+        for side in sides {
+            let fraction = (t - range[0]) / (range[1] - range[0]);
+            let along = side.range[0] + fraction * (side.range[1] - side.range[0]);
+            let mut jet = [0.0; 4];
+            if side.pcurve.d1(if side.range == range { t } else { along }, &mut jet).is_err() {
+                continue;
+            }
+            let distance = self.chart.d2(jet[0], jet[1])[0].distance(point);
+            if best.1.is_infinite() || distance < 0.5 * best.1 {
+                best = ([jet[0], jet[1]], distance);
+            }
+        }
+        best.0
+    }
+}
