@@ -7,6 +7,7 @@ pub mod elevate;
 pub mod formats;
 pub mod mesh;
 pub mod perturb;
+pub mod pipeline;
 pub mod project;
 pub mod quality;
 pub mod smooth;

@@ -24,48 +24,33 @@ const SHORTEST: f64 = 1e-6;
 /// Eigenvalues of a block below this share of the largest count as zero.
 const FLAT: f64 = 1e-13;
 
-/// How a descent ended.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Descent {
-    pub(super) sweeps: usize,
-    pub(super) value: f64,
-    /// No step downhill was found.
-    pub(super) stalled: bool,
-}
-
-/// Lowers the objective by at most `sweeps` steps; stops when a step gains less than `gain`, relative.
+/// Lowers the objective by at most `sweeps` steps and returns their number; ends when a step gains less than the share
+/// `gain`, when no step downhill is found, or when `watch` returns false.
 pub(super) fn descend(
     objective: &Objective,
     constraint: &dyn Constraint,
     x: &mut Vec<DVec3>,
     sweeps: usize,
     gain: f64,
-    mut watch: impl FnMut(usize, f64) -> bool,
-) -> Descent {
+    mut watch: impl FnMut(usize) -> bool,
+) -> usize {
     let mut state = State::new(objective, constraint, x);
     let mut memory: VecDeque<Pair> = VecDeque::new();
-    let mut done = Descent { sweeps: 0, value: state.value, stalled: false };
-    while done.sweeps < sweeps && state.value > 0.0 {
+    let mut done = 0;
+    while done < sweeps && state.value > 0.0 {
         let direction = state.direction(&memory);
         let slope = dot(&direction, &state.gradient);
-        if slope >= 0.0 && !memory.is_empty() {
-            memory.clear();
-            continue;
-        }
         let before = state.value;
-        match state.search(x, &direction, slope) {
+        match (slope < 0.0).then(|| state.search(x, &direction, slope)).flatten() {
             Some(pair) => remember(&mut memory, pair),
-            None if memory.is_empty() => {
-                done.stalled = true;
-                break;
-            }
+            None if memory.is_empty() => break,
             None => {
                 memory.clear();
                 continue;
             }
         }
-        done = Descent { sweeps: done.sweeps + 1, value: state.value, stalled: false };
-        if !watch(done.sweeps, state.value) || before - state.value < gain * before {
+        done += 1;
+        if !watch(done) || before - state.value < gain * before {
             break;
         }
     }

@@ -13,7 +13,7 @@ use glam::DVec3;
 
 use crate::mesh::NodeId;
 pub use problem::{ElementCost, Problem};
-pub use stages::{Progress, Settings, Smoothed, smooth};
+pub use stages::{Progress, Settings, Smoothed, Summary, smooth};
 
 /// The directions in which a node may move from where it stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
