@@ -6,12 +6,12 @@ use std::time::Instant;
 use cad::{Model, ReadOptions};
 use glam::DVec3;
 
-use crate::associate::{self, AssociateError, Association, Boundary, Claims, Host, LinkageError};
+use crate::associate::{self, AssociateError, Association, Boundary, Claims, LinkageError};
 use crate::element::Order;
 use crate::elevate::{Elevated, elevate};
 use crate::formats;
 use crate::mesh::{Mesh, TooMany};
-use crate::perturb::{WallFace, perturb};
+use crate::perturb::perturb;
 use crate::project::{CadConstraint, Projected, project};
 use crate::smooth::{self, Problem, Smoothed, smooth};
 
@@ -119,7 +119,7 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
     let projected = project(&elevated, &boundary, &association, job.freeze_linear);
 
     clock.step(Step::Perturb);
-    let mut places = perturbed(&elevated, &boundary, &association, &projected);
+    let mut places = perturb(&elevated, &boundary, &association, &projected);
 
     clock.step(Step::Smooth);
     let straight = elevated.mesh.points.clone();
@@ -138,31 +138,6 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
 
 fn refused(mesh: &Path, cad: &Path, cause: AssociateError) -> PipelineError {
     PipelineError::Associate { mesh: mesh.to_owned(), cad: cad.to_owned(), cause }
-}
-
-/// Places of all nodes with the displacement of the curved walls carried into planes and volume.
-fn perturbed(elevated: &Elevated, boundary: &Boundary, association: &Association, projected: &Projected) -> Vec<DVec3> {
-    let curved = |host: Host| matches!(host, Host::Surface(_)) && association.plane_of(host).is_none();
-    let wall: Vec<WallFace> = (0..boundary.faces.len())
-        .filter(|&f| curved(association.faces[f]))
-        .map(|f| {
-            let face = &boundary.faces[f];
-            let block = &elevated.mesh.blocks[face.block];
-            let stride = block.stride(elevated.mesh.order);
-            WallFace { cell: face.cell, nodes: block.nodes[face.element * stride..][..stride].to_vec() }
-        })
-        .collect();
-    let follows = |n: usize, host: Host| {
-        let in_plane = n >= elevated.linear_nodes && association.plane_of(host).is_some();
-        host == Host::Free || in_plane
-    };
-    let moved: Vec<bool> = projected.hosts.iter().enumerate().map(|(n, &host)| !follows(n, host)).collect();
-    let displacement = perturb(elevated, &wall, &projected.displacement, &moved);
-    let place = |n: usize| {
-        let wish = elevated.mesh.points[n] + displacement[n];
-        association.plane_of(projected.hosts[n]).map_or(wish, |plane| plane.closest(wish))
-    };
-    (0..elevated.mesh.points.len()).map(place).collect()
 }
 
 /// Times the steps and tells the observer.

@@ -1,0 +1,93 @@
+//! Roots: the wall vertex nearest to each linear node along mesh edges.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use rayon::prelude::*;
+
+use crate::elevate::Elevated;
+use crate::mesh::Mesh;
+
+/// For every linear node the seed at the end of the shortest path along mesh edges (Dijkstra from all seeds at once; ties
+/// go to the smaller seed); `None` where no path leads to one.
+pub(super) fn roots(elevated: &Elevated, seeds: &[bool]) -> Vec<Option<u32>> {
+    let (mesh, linear_nodes) = (&elevated.mesh, elevated.linear_nodes);
+    let (starts, neighbours) = neighbours(mesh, linear_nodes);
+    let mut roots: Vec<Option<u32>> = vec![None; linear_nodes];
+    let mut length = vec![f64::INFINITY; linear_nodes];
+    let mut queue = BinaryHeap::new();
+    for node in (0..linear_nodes).filter(|&n| seeds[n]) {
+        length[node] = 0.0;
+        queue.push(Reverse((Length(0.0), node as u32, node as u32)));
+    }
+    while let Some(Reverse((Length(so_far), root, node))) = queue.pop() {
+        let node = node as usize;
+        if roots[node].is_some() {
+            continue;
+        }
+        roots[node] = Some(root);
+        for &next in &neighbours[starts[node] as usize..starts[node + 1] as usize] {
+            let further = so_far + mesh.points[node].distance(mesh.points[next as usize]);
+            if further < length[next as usize] || (further == length[next as usize] && roots[next as usize].is_none()) {
+                length[next as usize] = further;
+                queue.push(Reverse((Length(further), root, next)));
+            }
+        }
+    }
+    roots
+}
+
+/// Which linear nodes of planes are walls of their own: the shortest mesh edge there leaves the planes.
+pub(super) fn walls_of_their_own(elevated: &Elevated, in_plane: impl Fn(usize) -> bool) -> Vec<bool> {
+    let points = &elevated.mesh.points;
+    let (starts, neighbours) = neighbours(&elevated.mesh, elevated.linear_nodes);
+    let own_wall = |n: usize| {
+        let around = &neighbours[starts[n] as usize..starts[n + 1] as usize];
+        let length = |&&m: &&u32| points[n].distance(points[m as usize]);
+        let nearest = around.iter().min_by(|a, b| length(a).total_cmp(&length(b)));
+        in_plane(n) && nearest.is_some_and(|&m| !in_plane(m as usize))
+    };
+    (0..elevated.linear_nodes).map(own_wall).collect()
+}
+
+/// A path's length, ordered.
+#[derive(PartialEq)]
+struct Length(f64);
+
+impl Eq for Length {}
+
+impl PartialOrd for Length {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Length {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.0.total_cmp(&other.0)
+    }
+}
+
+/// Nodes at the other ends of the mesh edges at each linear node.
+fn neighbours(mesh: &Mesh, linear_nodes: usize) -> (Vec<u32>, Vec<u32>) {
+    let mut pairs: Vec<(u32, u32)> = Vec::new();
+    for (_, block) in mesh.blocks_of(3) {
+        for nodes in block.elements(mesh.order) {
+            for &[a, b] in block.cell.edges() {
+                let ends = [nodes[usize::from(a)], nodes[usize::from(b)]].map(|n| n.index() as u32);
+                pairs.push((ends[0], ends[1]));
+                pairs.push((ends[1], ends[0]));
+            }
+        }
+    }
+    pairs.par_sort_unstable();
+    pairs.dedup();
+    let mut starts = vec![0u32; linear_nodes + 1];
+    for &(a, _) in &pairs {
+        starts[a as usize + 1] += 1;
+    }
+    for n in 0..linear_nodes {
+        starts[n + 1] += starts[n];
+    }
+    (starts, pairs.into_iter().map(|(_, b)| b).collect())
+}
