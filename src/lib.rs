@@ -1,6 +1,7 @@
 //! sagitta curves linear viscous meshes onto their CAD.
 #![forbid(unsafe_code)]
 
+pub mod certify;
 pub mod element;
 pub mod elevate;
 pub mod formats;

@@ -6,7 +6,9 @@
 pub mod basis;
 pub mod bernstein;
 mod cell;
+pub mod derivative;
 mod lattice;
+mod net;
 pub mod order;
 mod orientation;
 pub mod samples;
@@ -15,6 +17,7 @@ pub mod type_code;
 
 pub use cell::{Cell, Face, Order, OrderOutOfRange};
 pub use lattice::{face_lattice, lattice};
+pub use net::Net;
 pub use orientation::{canonical, interior_count, interior_slots, interior_start};
 pub use samples::Samples;
 pub use subdivision::corner_tets;
