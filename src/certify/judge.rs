@@ -6,7 +6,7 @@ use super::form::Form;
 use super::pieces::{Accuracy, Reference};
 use super::product::{Product, Workspace};
 use super::real::{Double, Real, UNIT};
-use super::search::{Outcome, Search, Task};
+use super::search::{Goal, Outcome, Search, Task};
 use super::verdict::{Bounds, Finding, Method, Verdict};
 use super::{Settings, straight};
 use crate::element::{Cell, Order};
@@ -30,13 +30,13 @@ pub struct Judge {
     simple: Workspace<f64>,
     double: Workspace<Double>,
     linear: Vec<f64>,
-    root: Vec<f64>,
-    search: Search,
+    pub(super) root: Vec<f64>,
+    pub(super) search: Search,
 }
 
 /// A power of two and the shift that bring an element to size 1, and its largest components then.
 #[derive(Clone, Copy, Debug)]
-struct Frame {
+pub(super) struct Frame {
     scale: f64,
     largest: [f64; 3],
 }
@@ -65,11 +65,7 @@ impl Stop {
 impl Judge {
     /// Judges an element. An element with coordinates that are not finite is undecided.
     pub fn examine(&mut self, shape: &Shape, settings: &Settings) -> Finding {
-        let corners = shape.cell.corner_count();
-        let counted = shape.points.len() == shape.cell.node_count(shape.order)
-            && shape.corners.is_none_or(|c| c.len() >= corners)
-            && shape.cell.dimension() == 3;
-        let Some(frame) = frame(shape.points).filter(|_| counted) else { return undecided() };
+        let Some(frame) = frame(shape) else { return undecided() };
         if let Some(finding) = self.straight(shape, frame, settings) {
             return finding;
         }
@@ -100,6 +96,12 @@ impl Judge {
 
     /// The finding in one arithmetic, and why the search stopped.
     fn curved<T: Arithmetic>(&mut self, shape: &Shape, frame: Frame, settings: &Settings) -> (Finding, Stop) {
+        let own = self.coefficients::<T>(shape, frame);
+        self.search::<T>(shape, frame, Form::of(shape.cell, shape.order), own, settings)
+    }
+
+    /// Fills the root with the coefficients of `J`.
+    pub(super) fn coefficients<T: Arithmetic>(&mut self, shape: &Shape, frame: Frame) -> Accuracy {
         let product = Product::of(shape.cell, shape.order);
         let form = Form::of(shape.cell, shape.order);
         let (work, root) = T::parts(self);
@@ -108,8 +110,7 @@ impl Judge {
         let largest = absolute(root);
         let error = product.growth.bound::<T>(frame.largest, columns, largest, [0.0; 3]);
         let raised = form.raise.as_ref().map_or(0.0, |raise| mean_error(raise.longest) * largest);
-        let own = Accuracy { error: error + raised, largest: largest + error + raised };
-        self.search::<T>(shape, frame, form, own, settings)
+        Accuracy { error: error + raised, largest: largest + error + raised }
     }
 
     /// Searches the net in `self.root` against the element's reference.
@@ -123,8 +124,12 @@ impl Judge {
     ) -> (Finding, Stop) {
         let (reference, accuracy) = self.reference::<T>(shape, frame, form);
         let known = reference.is_some();
-        let task =
-            Task { form, reference: reference.unwrap_or(Reference::Constant(own.largest)), accuracy: [own, accuracy] };
+        let task = Task {
+            form,
+            reference: reference.unwrap_or(Reference::Constant(own.largest)),
+            accuracy: [own, accuracy],
+            goal: Goal::Verdict,
+        };
         let outcome = self.search.run(&task, &self.root, settings);
         (finding(&outcome, known, frame, T::METHOD), Stop::of(&outcome))
     }
@@ -173,7 +178,7 @@ fn mean_error(n: usize) -> f64 {
 const LARGEST_REFERENCE: f64 = 1e30;
 
 /// An arithmetic, and the judge's memory for it.
-trait Arithmetic: Real {
+pub(super) trait Arithmetic: Real {
     const METHOD: Method;
     fn parts(judge: &mut Judge) -> (&mut Workspace<Self>, &mut Vec<f64>);
 }
@@ -192,9 +197,13 @@ impl Arithmetic for Double {
     }
 }
 
-/// The frame of an element; `None` where it has no size or is not finite.
-fn frame(points: &[DVec3]) -> Option<Frame> {
-    let &first = points.first()?;
+/// The frame of an element; `None` where it has no size, is not finite, or lacks nodes.
+pub(super) fn frame(shape: &Shape) -> Option<Frame> {
+    let points = shape.points;
+    let counted = points.len() == shape.cell.node_count(shape.order)
+        && shape.corners.is_none_or(|corners| corners.len() >= shape.cell.corner_count())
+        && shape.cell.dimension() == 3;
+    let &first = points.first().filter(|_| counted)?;
     let largest = points.iter().fold(DVec3::ZERO, |largest, &x| largest.max((x - first).abs()));
     let size = largest.max_element();
     let finite = points.iter().all(|x| x.is_finite());

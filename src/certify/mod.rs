@@ -7,8 +7,13 @@
 //! For the pyramid the determinant is that of `(X_a / s, X_b / s, X_c)` on the closed cube of its chart `(a, b, c)`,
 //! `s = 1 - c`: at the apex it depends on the direction, and all directions count.
 
+mod certificate;
+mod contest;
+mod elements;
 mod form;
 mod judge;
+#[cfg(test)]
+mod mesh_tests;
 mod pieces;
 mod product;
 #[cfg(test)]
@@ -16,12 +21,15 @@ mod product;
 mod random_tests;
 mod real;
 mod rounding;
+mod scaled;
 mod search;
 mod straight;
 #[cfg(test)]
 mod tests;
 mod verdict;
 
+pub use certificate::{Certificate, Judged, Tally, certify, mesh};
+pub use elements::{Buffer, Elements, MeshElements};
 pub use judge::{Judge, Shape};
 pub use verdict::{Bounds, Finding, Method, Verdict};
 

@@ -18,6 +18,17 @@ pub(super) struct Task<'a> {
     pub(super) reference: Reference,
     /// Of `J`, and of `J_c`.
     pub(super) accuracy: [Accuracy; 2],
+    /// What is asked.
+    pub(super) goal: Goal,
+}
+
+/// What a search is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Goal {
+    /// A verdict, and then the minimum of `J / J_c` to the wanted gap; ends at the first point with `J <= 0`.
+    Verdict,
+    /// The minimum alone, whatever its sign.
+    Minimum,
 }
 
 /// What a search found.
@@ -106,15 +117,15 @@ impl Search {
             gathered.attain(task, at, root[n], root.get(form.product + n).copied(), 0);
         }
         let whole = range(root, form.product, task.reference, [0, 1].map(|k| task.accuracy[k].error));
-        if gathered.refuted() || gathered.done_with(&whole, settings) {
+        if gathered.refuted(task) || gathered.done_with(task, &whole, settings) {
             gathered.done = whole;
             gathered.doubtful = usize::from(whole.determinant[0] <= 0.0);
-            return self.outcome(&gathered, settings);
+            return self.outcome(task, &gathered, settings);
         }
         self.begin(task, root, &mut gathered);
-        while !gathered.refuted() && gathered.pieces < settings.pieces {
+        while !gathered.refuted(task) && gathered.pieces < settings.pieces {
             let Some(piece) = self.open.pop() else { break };
-            if gathered.done_with(&piece.range, settings) {
+            if gathered.done_with(task, &piece.range, settings) {
                 self.open.push(piece); // the lowest is good enough, so all are
                 break;
             }
@@ -125,7 +136,7 @@ impl Search {
             }
             self.split(task, piece, &mut gathered, settings);
         }
-        self.outcome(&gathered, settings)
+        self.outcome(task, &gathered, settings)
     }
 
     /// Puts the root on the chart and opens it.
@@ -176,7 +187,7 @@ impl Search {
             for (at, j, c) in corner_values(form, &self.best[half], &corners) {
                 gathered.attain(task, at, j, c, halvings);
             }
-            if gathered.done_with(&ranges[half], settings) {
+            if gathered.done_with(task, &ranges[half], settings) {
                 gathered.done = gathered.done.and(&ranges[half]);
             } else {
                 gathered.doubtful += usize::from(ranges[half].determinant[0] <= 0.0);
@@ -221,11 +232,11 @@ impl Search {
         [range(left, form.size, task.reference, errors), range(right, form.size, task.reference, errors)]
     }
 
-    fn outcome(&mut self, gathered: &Gathered, settings: &Settings) -> Outcome {
+    fn outcome(&mut self, task: &Task, gathered: &Gathered, settings: &Settings) -> Outcome {
         let all = self.open.drain().fold(gathered.done, |all, piece| all.and(&piece.range));
         let [lowest, _] = gathered.attained;
         let verdict = match () {
-            () if gathered.refuted() => Verdict::Invalid { at: lowest.1, value: lowest.0 },
+            () if gathered.refuted(task) => Verdict::Invalid { at: lowest.1, value: lowest.0 },
             () if gathered.doubtful == 0 && all.determinant[0] > 0.0 => Verdict::Valid,
             () => Verdict::Undecided,
         };
@@ -290,8 +301,8 @@ impl Gathered {
     }
 
     /// Whether a point with `J <= 0` is known.
-    fn refuted(&self) -> bool {
-        self.attained[0].0 <= 0.0
+    fn refuted(&self, task: &Task) -> bool {
+        task.goal == Goal::Verdict && self.attained[0].0 <= 0.0
     }
 
     /// Whether a lower bound is as near the attained minimum as is wanted.
@@ -300,7 +311,7 @@ impl Gathered {
     }
 
     /// Whether a piece needs no further halving.
-    fn done_with(&self, range: &Range, settings: &Settings) -> bool {
-        range.determinant[0] > 0.0 && self.close(range.lower, settings)
+    fn done_with(&self, task: &Task, range: &Range, settings: &Settings) -> bool {
+        (range.determinant[0] > 0.0 || task.goal == Goal::Minimum) && self.close(range.lower, settings)
     }
 }
