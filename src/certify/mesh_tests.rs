@@ -35,7 +35,7 @@ fn loose(seed: u64, count: usize, order: Option<Order>, amount: f64) -> Loose {
         let cell = Cell::VOLUME[n % 4];
         let order = order.unwrap_or(orders[n / 4 % 4]);
         let corners: Vec<DVec3> = unit_corners(cell).iter().map(|&x| x + random.vector() * 0.05).collect();
-        let amount = if n % 3 == 0 { 0.0 } else { amount * random.unit() };
+        let amount = if n.is_multiple_of(3) { 0.0 } else { amount * random.unit() };
         let points = straight(cell, order, &corners).iter().map(|&x| x + random.vector() * amount).collect();
         (cell, order, points, corners)
     };

@@ -13,6 +13,8 @@ mod elements;
 mod form;
 mod judge;
 #[cfg(test)]
+mod layer_tests;
+#[cfg(test)]
 mod mesh_tests;
 mod pieces;
 mod product;

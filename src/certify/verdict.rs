@@ -9,7 +9,7 @@ pub enum Verdict {
     Invalid {
         /// The point, in the cell's chart (`element::bernstein`).
         at: [f64; 3],
-        /// The determinant there, to rounding.
+        /// The determinant there is at most this.
         value: f64,
     },
     /// Neither could be proven; counts as failure.
