@@ -28,13 +28,18 @@ pub(super) struct Form {
 /// A family of parallel edges of the chart, to be bisected together.
 #[derive(Debug)]
 pub(super) struct Direction {
-    /// Coefficients along each line, one after another.
-    pub(super) lines: Vec<u16>,
-    /// Where each line begins in `lines`.
-    pub(super) starts: Vec<u32>,
+    /// Bundles of lines of equal length.
+    pub(super) bundles: Vec<Bundle>,
     /// Corners of the chart at the beginning and the end of each parallel edge.
     pub(super) edges: Vec<[u8; 2]>,
 }
+
+/// How many lines are halved together.
+pub(super) const LANES: usize = 8;
+
+/// [`LANES`] lines of one length: the coefficients at their first places, at their second ones, and so on. The last
+/// line may stand several times.
+pub(super) type Bundle = Vec<[u16; LANES]>;
 
 /// Coefficients of one net as means of another's.
 #[derive(Debug)]
@@ -121,22 +126,22 @@ impl Direction {
             let [Some(i), Some(j), Some(k)] = to else { return None };
             net.holds([i, j, k]).then_some([i, j, k])
         };
-        let (mut lines, mut starts) = (Vec::new(), vec![0]);
-        for &first in indices.iter().filter(|&&at| moved(at, -1).is_none()) {
-            lines.extend(std::iter::successors(Some(first), |&at| moved(at, 1)).map(|at| place(indices, at)));
-            starts.push(lines.len() as u32);
-        }
-        Direction { lines, starts, edges }
-    }
-
-    /// The lines.
-    pub(super) fn lines(&self) -> impl Iterator<Item = &[u16]> {
-        self.starts.windows(2).map(|w| &self.lines[w[0] as usize..w[1] as usize])
+        let along = |&first: &[usize; 3]| -> Vec<u16> {
+            std::iter::successors(Some(first), |&at| moved(at, 1)).map(|at| place(indices, at)).collect()
+        };
+        let mut lines: Vec<Vec<u16>> = indices.iter().filter(|&&at| moved(at, -1).is_none()).map(along).collect();
+        lines.sort_by_key(Vec::len);
+        let bundles = lines.chunk_by(|a, b| a.len() == b.len()).flat_map(|equal| equal.chunks(LANES).map(bundle));
+        Direction { bundles: bundles.collect(), edges }
     }
 
     fn degree(&self) -> usize {
-        self.lines().map(|line| line.len() - 1).max().unwrap_or(0)
+        self.bundles.iter().map(|bundle| bundle.len() - 1).max().unwrap_or(0)
     }
+}
+
+fn bundle(lines: &[Vec<u16>]) -> Bundle {
+    (0..lines[0].len()).map(|n| std::array::from_fn(|lane| lines[lane.min(lines.len() - 1)][n])).collect()
 }
 
 impl Means {

@@ -124,6 +124,7 @@ impl Judge {
     ) -> (Finding, Stop) {
         let (reference, accuracy) = self.reference::<T>(shape, frame, form);
         let known = reference.is_some();
+        let accuracy = if known { accuracy } else { Accuracy::default() };
         let task = Task {
             form,
             reference: reference.unwrap_or(Reference::Constant(own.largest)),

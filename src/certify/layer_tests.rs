@@ -3,6 +3,7 @@
 
 use glam::{DMat3, DVec3};
 
+use super::random_tests::Dense;
 use super::tests::{Random, examine, jacobian, straight, unit_corners};
 use super::{Judge, Settings, Shape, Verdict};
 use crate::element::{Cell, Order, Samples};
@@ -52,7 +53,8 @@ fn spots_between_survey_points_are_found() {
     for cell in Cell::VOLUME {
         for order in Order::all().skip(1) {
             let mut random = Random(77 ^ cell as u64 ^ (order.get() as u64) << 4);
-            let survey = Samples::survey(cell, order, order.get());
+            let places = Samples::survey(cell, order, order.get());
+            let survey = Dense::at(cell, order, places.points().to_vec());
             let corners = unit_corners(cell);
             let flat = straight(cell, order, &corners);
             let mut judge = Judge::default();
@@ -60,14 +62,10 @@ fn spots_between_survey_points_are_found() {
             for _ in 0..40 {
                 let noise: Vec<DVec3> = flat.iter().map(|_| random.vector()).collect();
                 let at = |t: f64| -> Vec<DVec3> { flat.iter().zip(&noise).map(|(&x, &n)| x + n * t).collect() };
-                let least = |points: &[DVec3]| {
-                    let seen = survey.points()[..survey.count()].iter();
-                    seen.map(|&place| jacobian(cell, order, points, place)).fold(f64::INFINITY, f64::min)
-                };
                 let (mut low, mut high) = (0.0, 0.5);
                 for _ in 0..12 {
                     let middle = 0.5 * (low + high);
-                    if least(&at(middle)) > 0.01 { low = middle } else { high = middle }
+                    if survey.least(&at(middle), &corners)[0] > 0.01 { low = middle } else { high = middle }
                 }
                 let points = at(low);
                 let shape = Shape { cell, order, points: &points, corners: Some(&corners) };
@@ -78,6 +76,19 @@ fn spots_between_survey_points_are_found() {
                 }
             }
             assert!(found > 2, "{cell} {order}: the survey saw all but {found} of 40");
+        }
+    }
+}
+
+/// An element without any volume, in a coordinate plane, has `J = 0` exactly.
+#[test]
+fn flat_elements_are_invalid() {
+    for cell in Cell::VOLUME {
+        for order in Order::all() {
+            let corners = unit_corners(cell);
+            let points: Vec<DVec3> = straight(cell, order, &corners).iter().map(|x| x.with_z(0.1)).collect();
+            let finding = examine(cell, order, &points, Some(&corners));
+            assert!(matches!(finding.verdict, Verdict::Invalid { .. }), "{cell} {order} {finding:?}");
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Pieces of a subdivided cell: storage, halving, and the bounds that their nets give.
 
-use super::form::{Direction, Form};
+use super::form::{Bundle, Direction, Form, LANES};
 use super::real::UNIT;
 
 /// Longest line of any net: degree 11 (hex and pyramid P4).
@@ -13,6 +13,16 @@ pub(super) enum Reference {
     Constant(f64),
     /// Each piece's second net holds `J_c`.
     Net,
+}
+
+impl Reference {
+    /// The value to compare with, given the second net's.
+    pub(super) fn at(self, c: Option<f64>) -> f64 {
+        match self {
+            Reference::Constant(c) => c,
+            Reference::Net => c.unwrap_or(f64::NAN),
+        }
+    }
 }
 
 /// How far stored coefficients may be off, and how large they can be.
@@ -45,22 +55,40 @@ pub(super) struct Range {
 pub(super) fn range(net: &[f64], size: usize, reference: Reference, errors: [f64; 2]) -> Range {
     let [error, reference_error] = errors;
     let (j, c) = net.split_at(size);
-    let (low, high) = j.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (l.min(x), h.max(x)));
+    let [low, high] = extremes(j);
     let lower = match reference {
         Reference::Constant(c) => quotient_below(low - error, c, reference_error),
         Reference::Net => {
-            let least = c.iter().copied().fold(f64::INFINITY, f64::min);
+            let [least, _] = extremes(c);
             if least > reference_error {
-                j.iter()
-                    .zip(c)
-                    .map(|(&j, &c)| quotient_below(j - error, c, reference_error))
-                    .fold(f64::INFINITY, f64::min)
+                // Where a numerator is negative, only such ones can give the minimum.
+                let signed = if low >= error { reference_error } else { -reference_error };
+                let quotients = j.iter().zip(c).map(|(&j, &c)| (j - error) / (c + signed));
+                let lowest = quotients.fold(f64::INFINITY, |l, q| if q < l { q } else { l });
+                lowest - 4.0 * UNIT * lowest.abs()
             } else {
                 f64::NEG_INFINITY
             }
         }
     };
     Range { lower, determinant: [low - error, high + error] }
+}
+
+/// Smallest and largest of finite numbers.
+fn extremes(values: &[f64]) -> [f64; 2] {
+    let (mut low, mut high) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
+    let chunks = values.chunks_exact(4);
+    let rest = chunks.remainder();
+    let least = |a: f64, b: f64| if b < a { b } else { a };
+    let most = |a: f64, b: f64| if b > a { b } else { a };
+    for chunk in chunks {
+        for lane in 0..4 {
+            low[lane] = least(low[lane], chunk[lane]);
+            high[lane] = most(high[lane], chunk[lane]);
+        }
+    }
+    let (low, high) = (rest.iter().chain(&low).copied(), rest.iter().chain(&high).copied());
+    [low.fold(f64::INFINITY, least), high.fold(f64::NEG_INFINITY, most)]
 }
 
 /// At most `j / c'` for every `c'` within `error` of `c > error`.
@@ -75,24 +103,37 @@ pub(super) fn quotient_above(j: f64, c: f64, error: f64) -> f64 {
 }
 
 /// Halves all lines of a net of `size` coefficients along a direction: de Casteljau's scheme at one half.
+///
+/// Sums are not halved as they arise but when they are stored, which is exact.
 pub(super) fn halve(net: &[f64], size: usize, direction: &Direction, left: &mut [f64], right: &mut [f64]) {
-    for ((from, left), right) in
-        net.chunks_exact(size).zip(left.chunks_exact_mut(size)).zip(right.chunks_exact_mut(size))
-    {
-        for line in direction.lines() {
-            let mut b = [0.0; LINE];
-            let n = line.len().min(LINE);
-            for (value, &at) in b.iter_mut().zip(line) {
-                *value = from[usize::from(at)];
-            }
-            for level in 0..n {
-                left[usize::from(line[level])] = b[0];
-                right[usize::from(line[n - 1 - level])] = b[n - 1 - level];
-                for i in 0..n - 1 - level {
-                    b[i] = 0.5 * (b[i] + b[i + 1]);
-                }
+    let halves = left.chunks_exact_mut(size).zip(right.chunks_exact_mut(size));
+    for (from, (left, right)) in net.chunks_exact(size).zip(halves) {
+        for bundle in &direction.bundles {
+            halve_bundle(from, bundle, left, right);
+        }
+    }
+}
+
+fn halve_bundle(from: &[f64], bundle: &Bundle, left: &mut [f64], right: &mut [f64]) {
+    let mut sums = [[0.0; LANES]; LINE];
+    let n = bundle.len().min(LINE);
+    for (sum, at) in sums.iter_mut().zip(bundle) {
+        *sum = at.map(|at| from[usize::from(at)]);
+    }
+    let mut scale = 1.0;
+    for level in 0..n {
+        let (first, last) = (bundle[level], bundle[n - 1 - level]);
+        for lane in 0..LANES {
+            left[usize::from(first[lane])] = scale * sums[0][lane];
+            right[usize::from(last[lane])] = scale * sums[n - 1 - level][lane];
+        }
+        for i in 0..n - 1 - level {
+            let next = sums[i + 1];
+            for (sum, next) in sums[i].iter_mut().zip(next) {
+                *sum += next;
             }
         }
+        scale *= 0.5;
     }
 }
 

@@ -7,7 +7,7 @@ use super::{Finding, Judge, Settings, Shape, Verdict};
 use crate::element::{Cell, Order, Samples};
 
 /// Gradient tables at random points, for the order and for order 1.
-struct Dense {
+pub(super) struct Dense {
     cell: Cell,
     order: Order,
     tables: [Samples; 2],
@@ -17,6 +17,11 @@ impl Dense {
     fn new(cell: Cell, order: Order, count: usize, random: &mut Random) -> Dense {
         let mut points: Vec<[f64; 3]> = (0..count).map(|_| random.inside(cell)).collect();
         points.extend(cell.corners().iter().map(|c| c.map(f64::from)));
+        Dense::at(cell, order, points)
+    }
+
+    /// At given points of the chart.
+    pub(super) fn at(cell: Cell, order: Order, points: Vec<[f64; 3]>) -> Dense {
         Dense { cell, order, tables: [order, Order::LINEAR].map(|order| Samples::new(cell, order, points.clone())) }
     }
 
@@ -36,7 +41,7 @@ impl Dense {
     }
 
     /// Smallest sampled `J` and `J / J_c`.
-    fn least(&self, points: &[DVec3], corners: &[DVec3]) -> [f64; 2] {
+    pub(super) fn least(&self, points: &[DVec3], corners: &[DVec3]) -> [f64; 2] {
         let (j, c) = (self.determinants(0, points), self.determinants(1, corners));
         let ratio = j.iter().zip(&c).map(|(j, c)| j / c).fold(f64::INFINITY, f64::min);
         [j.iter().copied().fold(f64::INFINITY, f64::min), ratio]

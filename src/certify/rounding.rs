@@ -51,6 +51,9 @@ impl Growth {
         coefficient: f64,
         off: [f64; 3],
     ) -> f64 {
+        if (0..3).any(|axis| nodes[axis] == 0.0 && off[axis] == 0.0) {
+            return 0.0; // all nodes in one coordinate plane: every product has an exact zero
+        }
         let eps: [[f64; 3]; 3] = std::array::from_fn(|k| {
             let (terms, sum) = self.columns[k];
             let relative = gamma(terms, T::ROUNDOFF) + T::SHIFT_ROUNDOFF;

@@ -163,15 +163,15 @@ impl Search {
         self.open.push(Piece { range, slot, halvings: 0, serial: 0 });
     }
 
-    /// Whether rounding leaves a piece's bound of `J` as good as halving could make it; the piece is then a constant,
-    /// as far as can be told, that is not positive or that stands over a constant `J_c`.
+    /// Whether rounding leaves a piece's bound nearly as good as halving could make it: errors cost it twice as much as
+    /// the distance of its net from the values at its corners.
     fn as_good_as_it_gets(&self, task: &Task, piece: &Piece) -> bool {
         let form = task.form;
         let (net, corners) = self.store.get(piece.slot);
-        let lowest = net[..form.size].iter().copied().fold(f64::INFINITY, f64::min);
-        let attained = corner_values(form, net, corners).map(|c| c.1).fold(f64::INFINITY, f64::min);
-        let matters = matches!(task.reference, Reference::Constant(_)) || piece.range.determinant[0] <= 0.0;
-        matters && attained - lowest <= 2.0 * task.errors(piece.halvings + 1)[0]
+        let exact = range(net, form.size, task.reference, [0.0; 2]).lower;
+        let attained = corner_values(form, net, corners).map(|(_, j, c)| j / task.reference.at(c));
+        let attained = attained.fold(f64::INFINITY, f64::min);
+        exact > f64::NEG_INFINITY && attained - exact <= 0.5 * (exact - piece.range.lower)
     }
 
     /// Halves a piece.
@@ -282,10 +282,7 @@ impl Gathered {
     /// Takes note of the values at a corner.
     fn attain(&mut self, task: &Task, at: [f64; 3], j: f64, c: Option<f64>, halvings: usize) {
         let [error, reference_error] = task.errors(halvings);
-        let c = match task.reference {
-            Reference::Constant(c) => c,
-            Reference::Net => c.unwrap_or(f64::NAN),
-        };
+        let c = task.reference.at(c);
         if c > reference_error {
             let quotient = quotient_above(j + error, c, reference_error);
             if quotient < self.quotient.0 {

@@ -11,8 +11,9 @@ const STRAIGHT: f64 = 1e-9;
 /// Largest distance by components of the nodes from the lattice of the corners, rounding included; `None` where it is
 /// more than [`STRAIGHT`].
 ///
-/// `nodes` are shifted and scaled, `largest` their largest components. A node's own shift, the weights (relative error
-/// `4 u`) and the sum of at most 8 products leave an error below `16 u` of the largest component, doubled here.
+/// `nodes` are shifted and scaled, `largest` their largest components. Relative to `largest`: a node's own shift is off
+/// by `u`, the weights by less than `40 u` taken together (at most 8, each a product of up to three differences of
+/// lattice coordinates), the sum of products by `9 u`; `64 u` covers them.
 pub(super) fn distance(cell: Cell, order: Order, nodes: &[[f64; 3]], largest: [f64; 3]) -> Option<[f64; 3]> {
     let corners = cell.corner_count();
     let mut off = [0.0f64; 3];
@@ -25,7 +26,7 @@ pub(super) fn distance(cell: Cell, order: Order, nodes: &[[f64; 3]], largest: [f
             return None;
         }
     }
-    Some([0, 1, 2].map(|axis| off[axis] + 32.0 * UNIT * largest[axis]))
+    Some([0, 1, 2].map(|axis| off[axis] + 64.0 * UNIT * largest[axis]))
 }
 
 /// Weights of the corners at each node of the straight element.
