@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 pub mod associate;
+pub mod certify;
 pub mod element;
 pub mod elevate;
 pub mod formats;

@@ -6,8 +6,13 @@
 pub mod basis;
 pub mod bernstein;
 mod cell;
+<<<<<<< HEAD
 mod extension;
+=======
+pub mod derivative;
+>>>>>>> 5bdeafb9652c9c4ad73daaee19729c08ba09c509
 mod lattice;
+mod net;
 pub mod order;
 mod orientation;
 pub mod samples;
@@ -17,6 +22,7 @@ pub mod type_code;
 pub use cell::{Cell, Face, Order, OrderOutOfRange};
 pub use extension::interior_extension;
 pub use lattice::{face_lattice, lattice};
+pub use net::Net;
 pub use orientation::{canonical, interior_count, interior_slots, interior_start};
 pub use samples::Samples;
 pub use subdivision::corner_tets;

@@ -1,0 +1,220 @@
+//! The certificate of a mesh: every element judged, in parallel and in a fixed order.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::contest::{Contest, Measure, SHARP};
+use super::elements::{Buffer, Elements, MeshElements};
+use super::{Bounds, Finding, Judge, Method, Settings, Shape, Verdict};
+use crate::element::{Cell, Order, basis};
+use crate::mesh::Mesh;
+
+/// Elements judged in one go by one thread.
+const CHUNK: usize = 1024;
+
+/// What is proven of a mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Certificate {
+    /// By kind of cell, in the order of [`Cell::VOLUME`].
+    pub tallies: [Tally; 4],
+    /// All elements that are not proven valid, in their order.
+    pub failures: Vec<Judged>,
+    /// Bounds of the smallest `J / J_c` of all elements whose `J_c` is positive.
+    pub relative: Bounds,
+    /// Bounds of the smallest scaled Jacobian.
+    pub scaled: Bounds,
+    /// The elements with the smallest `J / J_c`, worst first.
+    pub worst_relative: Vec<Judged>,
+    /// The elements with the smallest scaled Jacobian, worst first.
+    pub worst_scaled: Vec<Judged>,
+}
+
+/// Counts of the elements of one kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// All.
+    pub elements: usize,
+    /// Straight ones, certified by their linear element.
+    pub straight: usize,
+    /// Those that took more than `f64`.
+    pub double: usize,
+    /// Proven valid.
+    pub valid: usize,
+    /// Proven invalid.
+    pub invalid: usize,
+    /// Neither.
+    pub undecided: usize,
+    /// Those whose `J_c` is not positive: the linear element is itself invalid.
+    pub without_reference: usize,
+}
+
+/// A finding with its element and place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Judged {
+    /// Number of the element.
+    pub element: usize,
+    /// Its kind.
+    pub cell: Cell,
+    /// Its order.
+    pub order: Order,
+    /// What was found.
+    pub finding: Finding,
+    /// Where its smallest known determinant is attained (relative to `J_c` where that is positive).
+    pub place: DVec3,
+}
+
+impl Certificate {
+    /// Whether every element is proven valid.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.failures.is_empty()
+    }
+}
+
+/// Certifies a mesh; `unperturbed` as for [`MeshElements::new`].
+#[must_use]
+pub fn mesh(mesh: &Mesh, unperturbed: Option<&[DVec3]>, settings: &Settings) -> Certificate {
+    certify(&MeshElements::new(mesh, unperturbed), settings)
+}
+
+/// Certifies all elements of a source. The certificate does not depend on the number of threads.
+#[must_use]
+pub fn certify(elements: &impl Elements, settings: &Settings) -> Certificate {
+    let chunks = elements.count().div_ceil(CHUNK);
+    let summaries: Vec<Summary> = (0..chunks)
+        .into_par_iter()
+        .map_init(Bench::default, |bench, chunk| {
+            let last = elements.count().min((chunk + 1) * CHUNK);
+            bench.summary(elements, chunk * CHUNK..last, settings)
+        })
+        .collect();
+    let mut all = Summary::default();
+    summaries.into_iter().for_each(|summary| all.merge(summary));
+    all.certificate(elements, settings)
+}
+
+/// A judge with its buffer.
+#[derive(Default)]
+struct Bench {
+    judge: Judge,
+    buffer: Buffer,
+}
+
+impl Bench {
+    /// Reads an element and has something done with its shape.
+    fn with<R>(&mut self, elements: &impl Elements, element: usize, work: impl FnOnce(&mut Judge, &Shape) -> R) -> R {
+        self.buffer.points.clear();
+        self.buffer.corners.clear();
+        let (cell, order) = elements.read(element, &mut self.buffer);
+        let corners = (!self.buffer.corners.is_empty()).then_some(self.buffer.corners.as_slice());
+        work(&mut self.judge, &Shape { cell, order, points: &self.buffer.points, corners })
+    }
+
+    fn summary(&mut self, elements: &impl Elements, range: std::ops::Range<usize>, settings: &Settings) -> Summary {
+        let mut summary = Summary::default();
+        for element in range {
+            let judged = self.with(elements, element, |judge, shape| {
+                let finding = judge.examine(shape, settings);
+                Judged { element, cell: shape.cell, order: shape.order, finding, place: DVec3::NAN }
+            });
+            summary.add(judged);
+        }
+        summary.relative.trim();
+        summary.scaled.trim();
+        summary
+    }
+}
+
+/// What a run of elements amounts to.
+struct Summary {
+    tallies: [Tally; 4],
+    failures: Vec<Judged>,
+    relative: Contest,
+    scaled: Contest,
+}
+
+impl Default for Summary {
+    fn default() -> Summary {
+        Summary {
+            tallies: Default::default(),
+            failures: Vec::new(),
+            relative: Contest::new(Measure::Relative),
+            scaled: Contest::new(Measure::Scaled),
+        }
+    }
+}
+
+impl Summary {
+    fn add(&mut self, judged: Judged) {
+        let finding = &judged.finding;
+        for (tally, _) in self.tallies.iter_mut().zip(Cell::VOLUME).filter(|&(_, cell)| cell == judged.cell) {
+            tally.elements += 1;
+            tally.straight += usize::from(finding.method == Method::Straight);
+            tally.double += usize::from(finding.method == Method::Double);
+            tally.without_reference += usize::from(finding.relative == Bounds::UNKNOWN);
+            match finding.verdict {
+                Verdict::Valid => tally.valid += 1,
+                Verdict::Invalid { .. } => tally.invalid += 1,
+                Verdict::Undecided => tally.undecided += 1,
+            }
+        }
+        if !finding.verdict.is_valid() {
+            self.failures.push(judged);
+        }
+        self.relative.add(judged);
+        self.scaled.add(judged);
+    }
+
+    fn merge(&mut self, other: Summary) {
+        for (tally, more) in self.tallies.iter_mut().zip(other.tallies) {
+            tally.merge(more);
+        }
+        self.failures.extend(other.failures);
+        self.relative.merge(other.relative);
+        self.scaled.merge(other.scaled);
+    }
+
+    /// Sharpens the minima and finds the places.
+    fn certificate(mut self, elements: &impl Elements, settings: &Settings) -> Certificate {
+        let sharp = Settings { gap: settings.gap.min(SHARP), ..*settings };
+        for contest in [&mut self.relative, &mut self.scaled] {
+            contest.trim();
+            let measure = contest.measure();
+            contest.sharpen(|judged, bench: &mut Bench| {
+                bench.with(elements, judged.element, |judge, shape| measure.sharpened(judge, shape, &sharp))
+            });
+        }
+        let mut bench = Bench::default();
+        let mut place = |judged: &mut Judged| {
+            judged.place = bench.with(elements, judged.element, |_, shape| place(shape, &judged.finding));
+        };
+        self.failures.iter_mut().for_each(&mut place);
+        let (relative, mut worst_relative) = self.relative.end();
+        let (scaled, mut worst_scaled) = self.scaled.end();
+        worst_relative.iter_mut().chain(&mut worst_scaled).for_each(place);
+        Certificate { tallies: self.tallies, failures: self.failures, relative, scaled, worst_relative, worst_scaled }
+    }
+}
+
+/// The place of an element's smallest known determinant.
+fn place(shape: &Shape, finding: &Finding) -> DVec3 {
+    let at = match finding.verdict {
+        Verdict::Invalid { at, .. } => at,
+        _ if finding.relative.upper.is_finite() => finding.relative.at,
+        _ => finding.scaled.at,
+    };
+    let weights = basis::values(shape.cell, shape.order, at);
+    shape.points.iter().zip(weights).map(|(&x, weight)| x * weight).sum()
+}
+
+impl Tally {
+    fn merge(&mut self, more: Tally) {
+        self.elements += more.elements;
+        self.straight += more.straight;
+        self.double += more.double;
+        self.valid += more.valid;
+        self.invalid += more.invalid;
+        self.undecided += more.undecided;
+        self.without_reference += more.without_reference;
+    }
+}

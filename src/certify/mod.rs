@@ -1,0 +1,52 @@
+//! The certificate: a proof, for every element, that its Jacobian determinant is positive on the whole closed cell.
+//!
+//! The determinant of a curved element is a polynomial. Its Bernstein coefficients bound it, subdivision makes the
+//! bounds as tight as need be, and all rounding is bounded, so that a verdict is a theorem about the coordinates as
+//! they stand in `f64`. Only [`crate::element`] is used: the judge shares no sample points and no cost with the smoother.
+//!
+//! For the pyramid the determinant is that of `(X_a / s, X_b / s, X_c)` on the closed cube of its chart `(a, b, c)`,
+//! `s = 1 - c`: at the apex it depends on the direction, and all directions count.
+
+mod certificate;
+mod contest;
+mod elements;
+mod form;
+mod judge;
+#[cfg(test)]
+mod layer_tests;
+#[cfg(test)]
+mod mesh_tests;
+mod pieces;
+mod product;
+#[cfg(test)]
+#[allow(clippy::panic)]
+mod random_tests;
+mod real;
+mod rounding;
+mod scaled;
+mod search;
+mod straight;
+#[cfg(test)]
+mod tests;
+mod verdict;
+
+pub use certificate::{Certificate, Judged, Tally, certify, mesh};
+pub use elements::{Buffer, Elements, MeshElements};
+pub use judge::{Judge, Shape};
+pub use verdict::{Bounds, Finding, Method, Verdict};
+
+/// When the certificate stops to subdivide.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Wanted distance of the bounds of min `J / J_c`; relative where the minimum is larger than 1. Default 0.05: an
+    /// element's verdict does not depend on it.
+    pub gap: f64,
+    /// Largest number of pieces an element is cut into before it counts as undecided. Default 2000.
+    pub pieces: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings { gap: 0.05, pieces: 2000 }
+    }
+}
