@@ -3,7 +3,7 @@
 use crate::assemble;
 use crate::model::Model;
 use crate::payload::{self, Answer};
-use crate::reader::{MEMORY_VARIABLE, READER_SUBCOMMAND};
+use crate::reader::{MEMORY_VARIABLE, READER_SUBCOMMAND, SCALE_VARIABLE};
 use opencascade_sys as sys;
 use std::io::{self, Read};
 use std::os::unix::process::ExitStatusExt;
@@ -13,7 +13,7 @@ use std::sync::mpsc;
 use std::time::Duration;
 use thiserror::Error;
 
-/// Limits of the reading child, and which program it is.
+/// Scale of the model, limits of the reading child, and which program it is.
 #[derive(Clone, Debug)]
 pub struct ReadOptions {
     /// Wall time after which the child is ended; default 300 s.
@@ -22,12 +22,15 @@ pub struct ReadOptions {
     pub memory_limit: u64,
     /// Program that calls [`serve_reader`](crate::serve_reader) when its first argument is [`READER_SUBCOMMAND`]; default this very program.
     pub reader: PathBuf,
+    /// Factor of all coordinates, default 1: the model is handed out in the unit of the file times this (a file in mm with 0.001 comes in m).
+    /// Tolerances and boxes follow; [`Model::unit`] still tells the unit of the file.
+    pub scale: f64,
 }
 
 impl Default for ReadOptions {
     fn default() -> Self {
         let reader = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("/proc/self/exe"));
-        Self { timeout: Duration::from_secs(300), memory_limit: 4 << 30, reader }
+        Self { timeout: Duration::from_secs(300), memory_limit: 4 << 30, reader, scale: 1.0 }
     }
 }
 
@@ -41,6 +44,14 @@ pub enum ReadError {
         path: PathBuf,
         /// The system's reason.
         source: io::Error,
+    },
+    /// [`ReadOptions::scale`] is no factor.
+    #[error("{}: a scale of {scale} is not possible: it must be finite and greater than 0", path.display())]
+    Scale {
+        /// The CAD file.
+        path: PathBuf,
+        /// What was asked for.
+        scale: f64,
     },
     /// Neither STEP nor IGES nor BREP by its content.
     #[error("{}: not a CAD file: neither STEP nor IGES nor BREP by its content", path.display())]
@@ -99,7 +110,8 @@ pub enum ReadError {
 }
 
 impl Model {
-    /// Reads a STEP, IGES or BREP file (by content; EGADS files are BREP with a trailer). All lengths come in the unit of the file.
+    /// Reads a STEP, IGES or BREP file (by content; EGADS files are BREP with a trailer). All lengths come in the unit of the file
+    /// times [`ReadOptions::scale`].
     ///
     /// # Errors
     /// [`ReadError`]: also when OCCT crashes, hangs or eats up the memory, which happens to the child process only.
@@ -109,6 +121,9 @@ impl Model {
             Err(source) => return Err(ReadError::Open { path: owned(), source }),
             Ok(None) => return Err(ReadError::Format { path: owned() }),
             Ok(Some(_)) => {}
+        }
+        if !(options.scale.is_finite() && options.scale > 0.0) {
+            return Err(ReadError::Scale { path: owned(), scale: options.scale });
         }
         let (bytes, status) = run(path, options)?;
         let refused = |cause: String| ReadError::Refused { path: owned(), cause };
@@ -144,6 +159,7 @@ fn run(path: &Path, options: &ReadOptions) -> Result<(Vec<u8>, ExitStatus), Read
         .arg(READER_SUBCOMMAND)
         .arg(path)
         .env(MEMORY_VARIABLE, options.memory_limit.to_string())
+        .env(SCALE_VARIABLE, options.scale.to_string())
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
         .stderr(Stdio::null())

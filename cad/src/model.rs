@@ -59,7 +59,7 @@ impl fmt::Display for SourceFormat {
     }
 }
 
-/// Unit of length of a file; all numbers of the model are in it.
+/// Unit of length of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unit {
     /// As the file names it; "unknown" where the format has none (BREP).
@@ -191,7 +191,7 @@ impl Model {
         self.format
     }
 
-    /// Unit of length; all numbers are in it.
+    /// Unit of length of the file; all numbers are in it, times [`ReadOptions::scale`](crate::ReadOptions::scale).
     pub fn unit(&self) -> &Unit {
         &self.unit
     }

@@ -18,6 +18,9 @@ pub const READER_SUBCOMMAND: &str = "__read-cad";
 /// Variable in which the parent hands the memory limit (bytes) to the child.
 pub(crate) const MEMORY_VARIABLE: &str = "SAGITTA_READER_MEMORY";
 
+/// Variable in which the parent hands [`ReadOptions::scale`](crate::ReadOptions::scale) to the child.
+pub(crate) const SCALE_VARIABLE: &str = "SAGITTA_READER_SCALE";
+
 /// Body of the hidden subcommand: reads the file with OCCT, rehearses on every entity what the parent will do, and writes the model to
 /// standard output. Nothing else reaches standard output, whatever OCCT prints.
 pub fn serve_reader(path: &Path) -> ExitCode {
@@ -41,6 +44,10 @@ fn limit_memory() {
     let _ = setrlimit(Resource::As, Rlimit { current: Some(current), maximum });
 }
 
+fn scale() -> f64 {
+    std::env::var(SCALE_VARIABLE).ok().and_then(|text| text.parse().ok()).unwrap_or(1.0)
+}
+
 /// Keeps the pipe to the parent and points standard output to `/dev/null`.
 fn take_stdout() -> Option<OwnedFd> {
     let pipe = rustix::io::dup(std::io::stdout()).ok()?;
@@ -61,7 +68,7 @@ fn read(path: &Path) -> Result<(Description, Vec<u8>), String> {
         SourceFormat::Iges => sys::Format::Iges,
         SourceFormat::Brep => sys::Format::Brep,
     };
-    let import = sys::read_file(name, asked).map_err(|error| error.to_string())?;
+    let import = sys::read_file(name, asked, scale()).map_err(|error| error.to_string())?;
     let label = |label: sys::Label| RawLabel {
         kind: label.kind,
         index: label.index,

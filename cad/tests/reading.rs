@@ -47,6 +47,23 @@ fn references_resolve() {
 }
 
 #[test]
+fn scale_moves_coordinates_and_tolerances_but_not_the_unit() {
+    for name in ["weeble/weeble.step", "weeble/weeble.igs"] {
+        let plain = fixture(name);
+        let scaled = Model::read(&common::path(name), &cad::ReadOptions { scale: 0.001, ..options() }).unwrap();
+        assert_eq!(plain.unit(), scaled.unit());
+        assert!((scaled.diagonal() / plain.diagonal() - 0.001).abs() < 1e-12, "{name}");
+        for (a, b) in plain.faces().iter().zip(scaled.faces()) {
+            assert!((b.tolerance / a.tolerance - 0.001).abs() < 1e-9 && a.label == b.label, "{name} {}", a.id);
+        }
+        for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            let error = Model::read(&common::path(name), &cad::ReadOptions { scale, ..options() });
+            assert!(matches!(error, Err(ReadError::Scale { .. })), "{scale}");
+        }
+    }
+}
+
+#[test]
 fn bad_files_get_errors() {
     let dir = tempfile::tempdir().unwrap();
     let write = |name: &str, bytes: &[u8]| {

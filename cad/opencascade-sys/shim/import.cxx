@@ -101,10 +101,10 @@ void add_group(rust::Vec<Label>& labels, const Shape& shape, const TopoDS_Shape&
   }
 }
 
-TopoDS_Shape in_file_unit(const TopoDS_Shape& shape, double millimetres) {
-  if (millimetres == 1) return shape;
+TopoDS_Shape scaled_by(const TopoDS_Shape& shape, double factor) {
+  if (factor == 1) return shape;
   gp_Trsf scale;
-  scale.SetScale(gp_Pnt(0, 0, 0), 1 / millimetres);
+  scale.SetScale(gp_Pnt(0, 0, 0), factor);
   BRepBuilderAPI_Transform transform(shape, scale, Standard_True);
   return transform.Shape();
 }
@@ -236,7 +236,7 @@ Import::Import(std::unique_ptr<Shape> shape, std::string unit, double scale, rus
 
 rust::Vec<Label> Import::labels() const { return labels_; }
 
-std::unique_ptr<Import> read_file(rust::Str name, Format format) {
+std::unique_ptr<Import> read_file(rust::Str name, Format format, double scale) {
   return guard("reading", [&] {
     be_silent();
     const std::string path(name);
@@ -248,7 +248,7 @@ std::unique_ptr<Import> read_file(rust::Str name, Format format) {
     const Shape read(source.shape);
     rust::Vec<Label> labels = labels_of(read, source.origins);
     for (const auto& [shape, reference, title] : source.groups) add_group(labels, read, shape, reference, title);
-    auto scaled = std::make_unique<Shape>(in_file_unit(source.shape, source.millimetres));
+    auto scaled = std::make_unique<Shape>(scaled_by(source.shape, scale / source.millimetres));
     if (scaled->face_count() != read.face_count() || scaled->edge_count() != read.edge_count())
       throw std::runtime_error("scaling to the unit of the file changed the topology");
     return std::make_unique<Import>(std::move(scaled), source.unit, source.millimetres, std::move(labels), std::move(source.dropped));

@@ -25,6 +25,7 @@ private:
   rust::Vec<rust::String> dropped_;
 };
 
-std::unique_ptr<Import> read_file(rust::Str path, Format format);
+// Coordinates come in the unit of the file times `scale`.
+std::unique_ptr<Import> read_file(rust::Str path, Format format, double scale);
 
 } // namespace occt

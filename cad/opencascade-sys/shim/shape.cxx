@@ -4,6 +4,9 @@
 
 #include <BRepTools.hxx>
 #include <BRepTools_WireExplorer.hxx>
+#include <BRep_TEdge.hxx>
+#include <BRep_TFace.hxx>
+#include <BRep_TVertex.hxx>
 #include <BRep_Tool.hxx>
 #include <BinTools.hxx>
 #include <TopExp.hxx>
@@ -21,6 +24,11 @@ int number(const TopTools_IndexedMapOfShape& map, const TopoDS_Shape& shape) { r
 const TopoDS_Shape& at(const TopTools_IndexedMapOfShape& map, size_t i) {
   if (i >= size_t(map.Extent())) throw std::runtime_error("no such entity");
   return map(int(i) + 1);
+}
+
+// The tolerance as stored: BRep_Tool::Tolerance gives no less than 1e-7, whatever the scale of the model.
+template <class Stored> double tolerance_of(const TopoDS_Shape& shape) {
+  return Handle(Stored)::DownCast(shape.TShape())->Tolerance();
 }
 
 } // namespace
@@ -84,7 +92,7 @@ FaceData Shape::face(size_t i) const {
     const TopoDS_Face face = TopoDS::Face(at(faces_, i));
     FaceData data{};
     data.reversed = face.Orientation() == TopAbs_REVERSED;
-    data.tolerance = BRep_Tool::Tolerance(face);
+    data.tolerance = tolerance_of<BRep_TFace>(face);
     BRepTools::UVBounds(face, data.u_min, data.u_max, data.v_min, data.v_max);
     data.natural = BRep_Tool::NaturalRestriction(face);
     return data;
@@ -95,7 +103,7 @@ EdgeData Shape::edge(size_t i) const {
   return guard("edge", [&] {
     const TopoDS_Edge edge = TopoDS::Edge(at(edges_, i).Oriented(TopAbs_FORWARD));
     EdgeData data{};
-    data.tolerance = BRep_Tool::Tolerance(edge);
+    data.tolerance = tolerance_of<BRep_TEdge>(edge);
     data.degenerate = BRep_Tool::Degenerated(edge);
     BRep_Tool::Range(edge, data.first, data.last);
     TopoDS_Vertex start, end;
@@ -114,7 +122,7 @@ VertexData Shape::vertex(size_t i) const {
     data.x = p.X();
     data.y = p.Y();
     data.z = p.Z();
-    data.tolerance = BRep_Tool::Tolerance(vertex);
+    data.tolerance = tolerance_of<BRep_TVertex>(vertex);
     return data;
   });
 }

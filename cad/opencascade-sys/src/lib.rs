@@ -149,7 +149,8 @@ mod ffi {
         fn bytes(self: &Shape) -> Result<Vec<u8>>;
         fn shape_from_bytes(bytes: &[u8]) -> Result<UniquePtr<Shape>>;
 
-        fn read_file(path: &str, format: Format) -> Result<UniquePtr<Import>>;
+        /// Coordinates come in the unit of the file times `scale`.
+        fn read_file(path: &str, format: Format, scale: f64) -> Result<UniquePtr<Import>>;
         fn shape(self: &Import) -> &Shape;
         fn unit(self: &Import) -> String;
         fn millimetres_per_unit(self: &Import) -> f64;
