@@ -19,6 +19,8 @@ pub struct Certificate {
     pub tallies: [Tally; 4],
     /// All elements that are not proven valid, in their order.
     pub failures: Vec<Judged>,
+    /// For every element, in order, a lower bound of its `J / J_c`; not a number where `J_c` is not positive.
+    pub minima: Vec<f64>,
     /// Bounds of the smallest `J / J_c` of all elements whose `J_c` is positive.
     pub relative: Bounds,
     /// Bounds of the smallest scaled Jacobian.
@@ -128,6 +130,7 @@ impl Bench {
 /// What a run of elements amounts to.
 struct Summary {
     tallies: [Tally; 4],
+    minima: Vec<f64>,
     failures: Vec<Judged>,
     relative: Contest,
     scaled: Contest,
@@ -137,6 +140,7 @@ impl Default for Summary {
     fn default() -> Summary {
         Summary {
             tallies: Default::default(),
+            minima: Vec::new(),
             failures: Vec::new(),
             relative: Contest::new(Measure::Relative),
             scaled: Contest::new(Measure::Scaled),
@@ -158,6 +162,8 @@ impl Summary {
                 Verdict::Undecided => tally.undecided += 1,
             }
         }
+        let unknown = finding.relative == Bounds::UNKNOWN;
+        self.minima.push(if unknown { f64::NAN } else { finding.relative.lower });
         if !finding.verdict.is_valid() {
             self.failures.push(judged);
         }
@@ -169,6 +175,7 @@ impl Summary {
         for (tally, more) in self.tallies.iter_mut().zip(other.tallies) {
             tally.merge(more);
         }
+        self.minima.extend(other.minima);
         self.failures.extend(other.failures);
         self.relative.merge(other.relative);
         self.scaled.merge(other.scaled);
@@ -192,7 +199,15 @@ impl Summary {
         let (relative, mut worst_relative) = self.relative.end();
         let (scaled, mut worst_scaled) = self.scaled.end();
         worst_relative.iter_mut().chain(&mut worst_scaled).for_each(place);
-        Certificate { tallies: self.tallies, failures: self.failures, relative, scaled, worst_relative, worst_scaled }
+        Certificate {
+            tallies: self.tallies,
+            failures: self.failures,
+            minima: self.minima,
+            relative,
+            scaled,
+            worst_relative,
+            worst_scaled,
+        }
     }
 }
 

@@ -6,11 +6,8 @@
 pub mod basis;
 pub mod bernstein;
 mod cell;
-<<<<<<< HEAD
 mod extension;
-=======
 pub mod derivative;
->>>>>>> 5bdeafb9652c9c4ad73daaee19729c08ba09c509
 mod lattice;
 mod net;
 pub mod order;
