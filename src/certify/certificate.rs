@@ -19,7 +19,7 @@ pub struct Certificate {
     pub tallies: [Tally; 4],
     /// All elements that are not proven valid, in their order.
     pub failures: Vec<Judged>,
-    /// For every element, in order, a lower bound of its `J / J_c`; not a number where `J_c` is not positive.
+    /// For every element, in order, a lower bound of its `J / J_c`; minus infinity where `J_c` is not positive.
     pub minima: Vec<f64>,
     /// Bounds of the smallest `J / J_c` of all elements whose `J_c` is positive.
     pub relative: Bounds,
@@ -162,8 +162,7 @@ impl Summary {
                 Verdict::Undecided => tally.undecided += 1,
             }
         }
-        let unknown = finding.relative == Bounds::UNKNOWN;
-        self.minima.push(if unknown { f64::NAN } else { finding.relative.lower });
+        self.minima.push(finding.relative.lower);
         if !finding.verdict.is_valid() {
             self.failures.push(judged);
         }

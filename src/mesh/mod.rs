@@ -76,6 +76,21 @@ impl Mesh {
         self.blocks.iter().enumerate().filter(move |(_, b)| b.cell.dimension() == dimension)
     }
 
+    /// Names of the physical groups that an entity's elements belong to, each once.
+    #[must_use]
+    pub fn names_of(&self, entity: EntityKey) -> Vec<String> {
+        let of_entity = self.entities.iter().filter(|e| e.key == entity).flat_map(|e| &e.physical_tags);
+        let of_blocks = self.blocks.iter().filter(|b| b.entity == entity).flat_map(|b| &b.physical_tags);
+        let mut names = Vec::new();
+        for tag in of_entity.chain(of_blocks) {
+            let known = self.physical_names.iter().find(|n| n.dimension == entity.dimension && n.tag == tag.abs());
+            if let Some(known) = known.filter(|known| !names.contains(&known.name)) {
+                names.push(known.name.clone());
+            }
+        }
+        names
+    }
+
     /// The points of an element.
     pub fn points_of<'a>(&'a self, nodes: &'a [NodeId]) -> impl ExactSizeIterator<Item = DVec3> + 'a {
         nodes.iter().map(|&n| self.points[n.index()])

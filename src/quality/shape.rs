@@ -43,7 +43,7 @@ pub(crate) fn squared(t: DMat3) -> f64 {
     t.x_axis.length_squared() + t.y_axis.length_squared() + t.z_axis.length_squared()
 }
 
-/// Smallest `C_WCN` of an element's sub-elements and the sum over them, for the cut whose worst sub-element is best.
+/// Smallest and mean `C_WCN` of an element's sub-elements, for the cut whose worst sub-element is best.
 ///
 /// `points` are the element's nodes, `targets` the same nodes of the unperturbed mesh.
 #[must_use]

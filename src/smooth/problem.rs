@@ -25,6 +25,8 @@ pub struct Problem<'a> {
 pub struct ElementCost {
     /// Worst `C_WCN` of the sub-elements.
     pub c_wcn: f64,
+    /// Mean `C_WCN` of the sub-elements.
+    pub mean_c_wcn: f64,
     /// Worst `C_JAC` of the survey.
     pub c_jac: f64,
     /// How the element is best cut into sub-elements.
@@ -106,12 +108,12 @@ impl<'a> Problem<'a> {
             targets.clear();
             targets.extend(nodes.iter().map(|n| self.straight[n.index()] - origin));
             if points == targets {
-                return ElementCost { c_wcn: 1.0, c_jac: 1.0, cut: 0 };
+                return ElementCost { c_wcn: 1.0, mean_c_wcn: 1.0, c_jac: 1.0, cut: 0 };
             }
-            let (c_wcn, _, cut) = element_c_wcn(self.cell(e), self.order, points, targets);
+            let (c_wcn, mean_c_wcn, cut) = element_c_wcn(self.cell(e), self.order, points, targets);
             let element = Element { points, targets, cut };
             let c_jac = kernels.of(self.cell(e)).c_jac(&element, scratch);
-            ElementCost { c_wcn, c_jac, cut }
+            ElementCost { c_wcn, mean_c_wcn, c_jac, cut }
         };
         elements.par_iter().with_min_len(64).map_init(Default::default, cost).collect()
     }

@@ -73,6 +73,8 @@ pub struct Progress {
 pub struct Smoothed {
     /// Sweeps, all stages together.
     pub sweeps: usize,
+    /// Whether `watch` ended it.
+    pub stopped: bool,
     /// Costs of every volume element, by the closing survey.
     pub costs: Vec<ElementCost>,
     /// Smallest costs before the first sweep, by the closing survey.
@@ -144,7 +146,7 @@ pub fn smooth(
         }
     }
     *x = best.x;
-    Smoothed { sweeps: run.sweeps, costs: best.costs, start, end: best.summary }
+    Smoothed { sweeps: run.sweeps, stopped: run.stopped, costs: best.costs, start, end: best.summary }
 }
 
 /// The best state so far.

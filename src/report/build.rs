@@ -1,0 +1,168 @@
+//! Figures of a curved mesh, gathered.
+
+use std::collections::BTreeSet;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::{
+    CellReport, CertificateReport, Input, Nodes, PatchReport, Projections, Report, SCHEMA, SmoothingReport, StepReport,
+    WorstElement,
+};
+use crate::associate::Host;
+use crate::certify::{Certificate, Judged, Verdict};
+use crate::element::{Cell, Order, Samples, basis};
+use crate::formats::{Field, Support, Values};
+use crate::mesh::{EntityKey, Mesh};
+use crate::pipeline::{Curved, Job};
+
+/// Elements listed as worst.
+const LISTED: usize = 10;
+/// Divisions of a face, in multiples of p, at which its distance from the CAD is sampled.
+const DISTANCE_DENSITY: usize = 3;
+
+/// The report of a curved mesh.
+#[must_use]
+pub fn report(job: &Job, curved: &Curved) -> Report {
+    let mesh = &curved.mesh;
+    let linked = |host: &Host| matches!(host, Host::Surface(_));
+    Report {
+        schema: SCHEMA,
+        version: env!("CARGO_PKG_VERSION"),
+        input: Input {
+            mesh: job.mesh.display().to_string(),
+            cad: job.cad.display().to_string(),
+            linkage: job.linkage.as_ref().map(|path| path.display().to_string()),
+            cad_unit: curved.cad_unit.clone(),
+            cad_scale: curved.cad_scale,
+        },
+        order: mesh.order.into(),
+        certified: curved.certificate.holds(),
+        nodes: Nodes { linear: curved.linear_nodes, curved: mesh.points.len() },
+        cells: cells(curved),
+        patches: patches(curved),
+        unlinked_faces: curved.association.faces.iter().filter(|h| !linked(h)).count(),
+        certificate: certificate(mesh, &curved.certificate),
+        smoothing: SmoothingReport {
+            sweeps: curved.smoothed.sweeps,
+            stopped: curved.smoothed.stopped,
+            start: curved.smoothed.start,
+            end: curved.smoothed.end,
+        },
+        projections: Projections { count: curved.projected.projections, unproven: curved.projected.unproven },
+        notes: curved.association.notes.clone(),
+        seconds: curved.seconds.iter().map(|&(step, seconds)| StepReport { step: step.name(), seconds }).collect(),
+        peak_memory: peak_memory(),
+        threads: rayon::current_num_threads(),
+    }
+}
+
+fn cells(curved: &Curved) -> Vec<CellReport> {
+    let mut kinds: Vec<Cell> = Vec::new();
+    for (_, block) in curved.mesh.blocks_of(3) {
+        kinds.extend(std::iter::repeat_n(block.cell, block.tags.len()));
+    }
+    let tallies = curved.certificate.tallies.iter().zip(Cell::VOLUME).filter(|(tally, _)| tally.elements > 0);
+    tallies
+        .map(|(tally, cell)| {
+            let own = || (0..kinds.len()).filter(|&e| kinds[e] == cell);
+            let costs = || own().map(|e| &curved.smoothed.costs[e]);
+            CellReport {
+                cell: cell.name(),
+                count: tally.elements,
+                c_wcn_min: costs().map(|c| c.c_wcn).fold(1.0, f64::min),
+                c_wcn_mean: costs().map(|c| c.mean_c_wcn).sum::<f64>() / tally.elements as f64,
+                c_jac_min: costs().map(|c| c.c_jac).fold(1.0, f64::min),
+                certified_min: own().map(|e| curved.certificate.minima[e]).fold(f64::INFINITY, f64::min),
+                valid: tally.valid,
+                invalid: tally.invalid,
+                undecided: tally.undecided,
+            }
+        })
+        .collect()
+}
+
+fn patches(curved: &Curved) -> Vec<PatchReport> {
+    let mut entities: Vec<EntityKey> = curved.boundary.faces.iter().map(|f| f.entity).collect();
+    entities.sort_unstable();
+    entities.dedup();
+    entities.into_iter().map(|entity| patch(curved, entity)).collect()
+}
+
+fn patch(curved: &Curved, entity: EntityKey) -> PatchReport {
+    let faces: Vec<usize> =
+        (0..curved.boundary.faces.len()).filter(|&f| curved.boundary.faces[f].entity == entity).collect();
+    let host = |&f: &usize| curved.association.faces[f];
+    let on: BTreeSet<usize> =
+        faces.iter().filter_map(|f| if let Host::Surface(s) = host(f) { Some(s) } else { None }).collect();
+    let distances: Vec<f64> = faces.par_iter().filter_map(|&f| distance(curved, f)).collect();
+    let corners = faces.iter().flat_map(|&f| &curved.boundary.corners[f]);
+    PatchReport {
+        entity: entity.to_string(),
+        names: curved.mesh.names_of(entity),
+        surfaces: on.iter().map(|&s| curved.association.surfaces[s].label.clone()).collect(),
+        faces: faces.len(),
+        farthest: distances.into_iter().reduce(f64::max),
+        largest_offset: corners.map(|n| curved.projected.displacement[n.index()].length()).fold(0.0, f64::max),
+    }
+}
+
+/// The farthest point of a boundary face from the CAD surface that it is tied to.
+fn distance(curved: &Curved, face: usize) -> Option<f64> {
+    let Host::Surface(surface) = curved.association.faces[face] else { return None };
+    let group = &curved.association.surfaces[surface].group;
+    let (order, own) = (curved.mesh.order, &curved.boundary.faces[face]);
+    let block = &curved.mesh.blocks[own.block];
+    let stride = block.stride(order);
+    let nodes = &block.nodes[own.element * stride..][..stride];
+    let samples = Samples::survey(own.cell, Order::LINEAR, DISTANCE_DENSITY * order.get());
+    let far = samples.points()[..samples.count()].iter().map(|&at| {
+        let values = basis::values(own.cell, order, at);
+        let x: DVec3 = nodes.iter().zip(values).map(|(n, v)| curved.mesh.points[n.index()] * v).sum();
+        group.closest(x, None).distance
+    });
+    far.reduce(f64::max)
+}
+
+fn certificate(mesh: &Mesh, certificate: &Certificate) -> CertificateReport {
+    let tags: Vec<u64> = mesh.blocks_of(3).flat_map(|(_, block)| block.tags.iter().copied()).collect();
+    let worst = |judged: &Judged| WorstElement {
+        element: tags[judged.element],
+        cell: judged.cell.name(),
+        verdict: match judged.finding.verdict {
+            Verdict::Valid => "valid",
+            Verdict::Invalid { .. } => "invalid",
+            Verdict::Undecided => "undecided",
+        },
+        relative: [judged.finding.relative.lower, judged.finding.relative.upper],
+        place: judged.place.to_array(),
+    };
+    let weakest = certificate.worst_relative.iter().filter(|j| j.finding.verdict.is_valid()).take(LISTED);
+    CertificateReport {
+        relative: [certificate.relative.lower, certificate.relative.upper],
+        scaled: [certificate.scaled.lower, certificate.scaled.upper],
+        worst: certificate.failures.iter().chain(weakest).map(worst).collect(),
+    }
+}
+
+/// Per-cell values for pictures: certified minimum of J/J_c, and worst C_WCN.
+#[must_use]
+pub fn fields(curved: &Curved) -> Vec<Field> {
+    let real = |name: &str, values: Vec<f64>| Field {
+        name: name.to_owned(),
+        support: Support::Elements,
+        values: Values::Real(values),
+    };
+    vec![
+        real("certified_min_J_over_Jc", curved.certificate.minima.clone()),
+        real("C_WCN", curved.smoothed.costs.iter().map(|c| c.c_wcn).collect()),
+    ]
+}
+
+/// `VmHWM` of `/proc/self/status`, in bytes.
+fn peak_memory() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let kilobytes = line.and_then(|rest| rest.trim().trim_end_matches(" kB").parse::<u64>().ok());
+    kilobytes.unwrap_or(0) * 1024
+}

@@ -1,0 +1,169 @@
+//! What is told of a curved mesh: to people as text, to programs as JSON.
+//!
+//! The JSON document is this module's [`Report`], field by field; its `schema` changes when a field changes its meaning or
+//! goes away. Lengths are in the mesh's unit, times in seconds, memory in bytes.
+
+mod build;
+mod text;
+
+use serde::Serialize;
+
+use crate::smooth::Summary;
+
+pub use build::{fields, report};
+
+/// Name and version of the JSON document.
+pub const SCHEMA: &str = "sagitta-report-1";
+
+/// A curved mesh in figures.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// [`SCHEMA`].
+    pub schema: &'static str,
+    /// Version of the program.
+    pub version: &'static str,
+    /// The files that went in.
+    pub input: Input,
+    /// Polynomial order.
+    pub order: u8,
+    /// Whether every element is proven valid.
+    pub certified: bool,
+    /// Nodes of the linear and of the curved mesh.
+    pub nodes: Nodes,
+    /// By kind of cell.
+    pub cells: Vec<CellReport>,
+    /// By boundary entity of the mesh.
+    pub patches: Vec<PatchReport>,
+    /// Boundary faces that are tied to no CAD face.
+    pub unlinked_faces: usize,
+    /// Bounds of the mesh's smallest J / J_c and scaled Jacobian.
+    pub certificate: CertificateReport,
+    /// What the smoother did.
+    pub smoothing: SmoothingReport,
+    /// Closest points asked of the CAD, and how many of them are not proven to be the closest.
+    pub projections: Projections,
+    /// What a user should know.
+    pub notes: Vec<String>,
+    /// Seconds a step.
+    pub seconds: Vec<StepReport>,
+    /// Largest resident memory of the process so far; 0 where the system does not tell.
+    pub peak_memory: u64,
+    /// Threads that worked.
+    pub threads: usize,
+}
+
+/// Paths as given.
+#[derive(Clone, Debug, Serialize)]
+#[allow(missing_docs)] // the names say it
+pub struct Input {
+    pub mesh: String,
+    pub cad: String,
+    pub linkage: Option<String>,
+    /// The CAD file's unit, as it names it.
+    pub cad_unit: String,
+    /// What the CAD was multiplied by.
+    pub cad_scale: f64,
+}
+
+/// Counts of nodes.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[allow(missing_docs)] // the names say it
+pub struct Nodes {
+    pub linear: usize,
+    pub curved: usize,
+}
+
+/// Elements of one kind.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct CellReport {
+    /// `tet`, `pyramid`, `prism` or `hex`.
+    pub cell: &'static str,
+    /// How many.
+    pub count: usize,
+    /// Smallest `C_WCN` of their sub-elements (eqs 3-5).
+    pub c_wcn_min: f64,
+    /// Mean `C_WCN` of their sub-elements.
+    pub c_wcn_mean: f64,
+    /// Smallest `C_JAC` (eq. 6) at the closing survey.
+    pub c_jac_min: f64,
+    /// Proven lower bound of their J / J_c.
+    pub certified_min: f64,
+    /// Elements proven valid.
+    pub valid: usize,
+    /// Elements proven invalid.
+    pub invalid: usize,
+    /// Elements of which neither is proven.
+    pub undecided: usize,
+}
+
+/// Boundary elements of one entity of the mesh file.
+#[derive(Clone, Debug, Serialize)]
+pub struct PatchReport {
+    /// The entity.
+    pub entity: String,
+    /// Its physical names.
+    pub names: Vec<String>,
+    /// The CAD groups that its faces lie on; empty where it is not tied to the CAD.
+    pub surfaces: Vec<String>,
+    /// Number of faces.
+    pub faces: usize,
+    /// Farthest point of its curved faces from the CAD, at (3p)^2 samples a face; nothing where it is not tied to the CAD.
+    pub farthest: Option<f64>,
+    /// Largest move of a linear node onto the CAD.
+    pub largest_offset: f64,
+}
+
+/// The certificate of the whole mesh.
+#[derive(Clone, Debug, Serialize)]
+pub struct CertificateReport {
+    /// Smallest J / J_c: proven lower bound, and a value that is attained.
+    pub relative: [f64; 2],
+    /// Smallest scaled Jacobian, likewise.
+    pub scaled: [f64; 2],
+    /// The elements with the smallest J / J_c, worst first, and all that are not proven valid.
+    pub worst: Vec<WorstElement>,
+}
+
+/// An element to look at.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct WorstElement {
+    /// Its number in the file.
+    pub element: u64,
+    /// Its kind.
+    pub cell: &'static str,
+    /// `valid`, `invalid` or `undecided`.
+    pub verdict: &'static str,
+    /// Bounds of its smallest J / J_c.
+    pub relative: [f64; 2],
+    /// Where its smallest known Jacobian is.
+    pub place: [f64; 3],
+}
+
+/// What the smoother did.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct SmoothingReport {
+    /// Sweeps over the active nodes.
+    pub sweeps: usize,
+    /// Whether it was ended before it was done.
+    pub stopped: bool,
+    /// Smallest costs after perturbation.
+    pub start: Summary,
+    /// Smallest costs at the end.
+    pub end: Summary,
+}
+
+/// Counts of closest points.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[allow(missing_docs)] // the names say it
+pub struct Projections {
+    pub count: usize,
+    pub unproven: usize,
+}
+
+/// Time of a step.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[allow(missing_docs)] // the names say it
+pub struct StepReport {
+    pub step: &'static str,
+    pub seconds: f64,
+}

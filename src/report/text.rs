@@ -1,0 +1,86 @@
+//! The report as a table for people.
+
+use std::fmt;
+
+use super::Report;
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "{} -> P{}: {} nodes of {} linear ones",
+            self.input.mesh, self.order, self.nodes.curved, self.nodes.linear
+        )?;
+        writeln!(f)?;
+        self.cells(f)?;
+        writeln!(f)?;
+        self.patches(f)?;
+        writeln!(f)?;
+        self.work(f)?;
+        for note in &self.notes {
+            writeln!(f, "note: {note}")?;
+        }
+        self.verdict(f)
+    }
+}
+
+impl Report {
+    fn cells(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let heads = ["cell", "count", "C_WCN min", "mean", "C_JAC min", "J/Jc proven", "valid"];
+        let [cell, count, wcn, mean, jac, proven, valid] = heads;
+        writeln!(f, "{cell:<10}{count:>10}{wcn:>12}{mean:>9}{jac:>12}{proven:>14}{valid:>10}")?;
+        for c in &self.cells {
+            let (min, mean, jac, proven) = (c.c_wcn_min, c.c_wcn_mean, c.c_jac_min, c.certified_min);
+            writeln!(
+                f,
+                "{:<10}{:>10}{min:>12.4}{mean:>9.4}{jac:>12.4}{proven:>14.4}{:>10}",
+                c.cell, c.count, c.valid
+            )?;
+        }
+        Ok(())
+    }
+
+    fn patches(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [patch, faces, off, offset, on] = ["patch", "faces", "off CAD", "node offset", "CAD group"];
+        writeln!(f, "{patch:<24}{faces:>9}{off:>12}{offset:>13}  {on}")?;
+        for p in &self.patches {
+            let name = if p.names.is_empty() { p.entity.clone() } else { format!("{} {}", p.names.join(","), p.entity) };
+            let far = p.farthest.map_or("-".to_owned(), |d| format!("{d:.2e}"));
+            let on = if p.surfaces.is_empty() { "not tied".to_owned() } else { p.surfaces.join("; ") };
+            writeln!(f, "{name:<24}{:>9}{far:>12}{:>13.2e}  {on}", p.faces, p.largest_offset)?;
+        }
+        if self.unlinked_faces > 0 {
+            writeln!(f, "{} boundary faces are not tied to the CAD", self.unlinked_faces)?;
+        }
+        Ok(())
+    }
+
+    fn work(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let s = &self.smoothing;
+        let stopped = if s.stopped { ", stopped early" } else { "" };
+        writeln!(
+            f,
+            "smoothing: {} sweeps{stopped}; min C_WCN {:.4} -> {:.4}, min C_JAC {:.4} -> {:.4}, inverted {} -> {}",
+            s.sweeps, s.start.c_wcn, s.end.c_wcn, s.start.c_jac, s.end.c_jac, s.start.inverted, s.end.inverted
+        )?;
+        let p = &self.projections;
+        writeln!(f, "projections: {} ({} not proven to be the closest)", p.count, p.unproven)?;
+        let steps: Vec<String> = self.seconds.iter().map(|s| format!("{} {:.2}", s.step, s.seconds)).collect();
+        let memory = self.peak_memory as f64 / 1e6;
+        writeln!(f, "seconds: {}; {} threads, peak memory {memory:.0} MB", steps.join(", "), self.threads)
+    }
+
+    fn verdict(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [lower, upper] = self.certificate.relative;
+        if self.certified {
+            return write!(f, "certified: every element valid, J/Jc >= {lower:.4} everywhere (attained: {upper:.4})");
+        }
+        let failures = self.certificate.worst.iter().filter(|w| w.verdict != "valid");
+        write!(f, "NOT certified: {} elements", failures.clone().count())?;
+        for w in failures.take(10) {
+            let [x, y, z] = w.place;
+            write!(f, "\n  {} {} {} near ({x:.6}, {y:.6}, {z:.6})", w.verdict, w.cell, w.element)?;
+        }
+        Ok(())
+    }
+}
