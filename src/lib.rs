@@ -3,6 +3,7 @@
 
 pub mod associate;
 pub mod certify;
+pub mod cli;
 pub mod element;
 pub mod elevate;
 pub mod formats;
@@ -11,4 +12,6 @@ pub mod perturb;
 pub mod pipeline;
 pub mod project;
 pub mod quality;
+pub mod report;
+pub mod retreat;
 pub mod smooth;

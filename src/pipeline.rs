@@ -7,13 +7,18 @@ use cad::{Model, ReadOptions};
 use glam::DVec3;
 
 use crate::associate::{self, AssociateError, Association, Boundary, Claims, LinkageError};
+use crate::certify::{self, Certificate};
 use crate::element::Order;
 use crate::elevate::{Elevated, elevate};
 use crate::formats;
 use crate::mesh::{Mesh, TooMany};
 use crate::perturb::perturb;
 use crate::project::{CadConstraint, Projected, project};
+use crate::retreat::{GivenUp, retreat};
 use crate::smooth::{self, Problem, Smoothed, smooth};
+
+/// Elements that an error lists by number.
+const LISTED: usize = 10;
 
 /// What is to be curved, and how.
 #[derive(Clone, Debug)]
@@ -32,7 +37,9 @@ pub struct Job {
     pub freeze_linear: bool,
     /// Keep nodes on curved walls where projection put them.
     pub freeze_walls: bool,
-    /// Limits and unit of the CAD reader.
+    /// What the CAD is multiplied by; `None` finds the factor between known units that makes it fit.
+    pub cad_scale: Option<f64>,
+    /// Limits of the CAD reader.
     pub reading: ReadOptions,
     /// The smoother's settings.
     pub smoothing: smooth::Settings,
@@ -48,14 +55,35 @@ pub enum Step {
     Project,
     Perturb,
     Smooth,
+    Certify,
+}
+
+impl Step {
+    /// All steps, in order.
+    pub const ALL: [Step; 7] =
+        [Step::Read, Step::Associate, Step::Elevate, Step::Project, Step::Perturb, Step::Smooth, Step::Certify];
+
+    /// The step's word in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Step::Read => "read",
+            Step::Associate => "associate",
+            Step::Elevate => "elevate",
+            Step::Project => "project",
+            Step::Perturb => "perturb",
+            Step::Smooth => "smooth",
+            Step::Certify => "certify",
+        }
+    }
 }
 
 /// Who is told how the work goes on.
 pub trait Observer {
     /// A step begins.
     fn step(&mut self, step: Step);
-    /// The smoother finished a sweep.
-    fn progress(&mut self, progress: &smooth::Progress);
+    /// The smoother finished a sweep; false ends it.
+    fn progress(&mut self, progress: &smooth::Progress) -> bool;
 }
 
 /// Why there is no curved mesh. Every message names the file it is about.
@@ -70,8 +98,17 @@ pub enum PipelineError {
     Linkage(#[from] LinkageError),
     #[error("{mesh} and {cad}: {cause}", mesh = mesh.display(), cad = cad.display())]
     Associate { mesh: PathBuf, cad: PathBuf, cause: AssociateError },
-    #[error(transparent)]
-    TooMany(#[from] TooMany),
+    #[error("{mesh}: {cause}", mesh = mesh.display())]
+    TooMany { mesh: PathBuf, cause: TooMany },
+    #[error("{mesh}: has no volume elements (tets, pyramids, prisms, hexes): nothing to curve", mesh = mesh.display())]
+    NoVolume { mesh: PathBuf },
+    #[error("{mesh}: is of order {order} already; give the linear mesh", mesh = mesh.display())]
+    NotLinear { mesh: PathBuf, order: Order },
+    #[error(
+        "{mesh}: the linear mesh is itself inverted in {count} elements: {listed}; mend it first",
+        mesh = mesh.display()
+    )]
+    Inverted { mesh: PathBuf, count: usize, listed: String },
 }
 
 /// A curved mesh and how it came about.
@@ -85,10 +122,20 @@ pub struct Curved {
     pub linear_nodes: usize,
     /// What lies on which CAD group.
     pub association: Association,
+    /// The linear mesh's two-dimensional elements.
+    pub boundary: Boundary,
     /// Hosts, displacements and counts of the projection.
     pub projected: Projected,
     /// What the smoother did.
     pub smoothed: Smoothed,
+    /// What is proven of the mesh.
+    pub certificate: Certificate,
+    /// Boundary faces that are not on the CAD, so that the elements behind them are valid.
+    pub given_up: Vec<GivenUp>,
+    /// The CAD's unit, as its file names it.
+    pub cad_unit: String,
+    /// What the CAD was multiplied by.
+    pub cad_scale: f64,
     /// Seconds a step.
     pub seconds: Vec<(Step, f64)>,
 }
@@ -100,20 +147,16 @@ pub struct Curved {
 pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineError> {
     let mut clock = Clock::new(observer);
     clock.step(Step::Read);
-    let linear = formats::read(&job.mesh)?;
-    let model = Model::read(&job.cad, &job.reading)?;
+    let linear = read_linear(&job.mesh)?;
+    let model = Model::read(&job.cad, &scaled(job, job.cad_scale.unwrap_or(1.0)))?;
 
     clock.step(Step::Associate);
     let boundary = Boundary::new(&linear);
-    let claims = match &job.linkage {
-        Some(path) => associate::read_linkage(path, &linear, &boundary, &model)?,
-        None => Claims::by_tags(&linear, &boundary, &model),
-    };
-    let association = associate::associate(&linear, &boundary, &model, &claims, job.max_offset)
-        .map_err(|cause| refused(&job.mesh, &job.cad, cause))?;
+    let (tied, association) = tie(job, &linear, &boundary, model)?;
 
     clock.step(Step::Elevate);
-    let mut elevated = elevate(&linear, job.order)?;
+    let mut elevated =
+        elevate(&linear, job.order).map_err(|cause| PipelineError::TooMany { mesh: job.mesh.clone(), cause })?;
 
     clock.step(Step::Project);
     let projected = project(&elevated, &boundary, &association, job.freeze_linear);
@@ -126,14 +169,86 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
     let problem = Problem::new(&elevated.mesh, &straight);
     let constraint =
         CadConstraint::new(&association, &projected, elevated.linear_nodes, job.freeze_walls, job.freeze_linear);
-    let smoothed = smooth(&problem, &constraint, &job.smoothing, &mut places, |progress| {
-        clock.observer.progress(&progress);
-        true
-    });
+    let smoothed =
+        smooth(&problem, &constraint, &job.smoothing, &mut places, |progress| clock.observer.progress(&progress));
     elevated.mesh.points = places;
-    let seconds = clock.finish();
-    let Elevated { mesh, linear_nodes, .. } = elevated;
-    Ok(Curved { mesh, straight, linear_nodes, association, projected, smoothed, seconds })
+
+    clock.step(Step::Certify);
+    let Elevated { mut mesh, linear_nodes, .. } = elevated;
+    let first = certify::mesh(&mesh, Some(&straight[..linear_nodes]), &certify::Settings::default());
+    let (given_up, certificate) = retreat(&mut mesh, &straight, linear_nodes, &boundary, &association, first);
+    Ok(Curved {
+        mesh,
+        straight,
+        linear_nodes,
+        association,
+        boundary,
+        projected,
+        smoothed,
+        certificate,
+        given_up,
+        cad_unit: tied.unit,
+        cad_scale: tied.scale,
+        seconds: clock.finish(),
+    })
+}
+
+/// Reads the linear mesh and refuses what cannot be curved.
+fn read_linear(path: &Path) -> Result<Mesh, PipelineError> {
+    let mesh = path.to_owned();
+    let linear = formats::read(path)?;
+    if linear.order != Order::LINEAR {
+        return Err(PipelineError::NotLinear { mesh, order: linear.order });
+    }
+    if linear.element_count(3) == 0 {
+        return Err(PipelineError::NoVolume { mesh });
+    }
+    let certificate = certify::mesh(&linear, None, &certify::Settings::default());
+    if !certificate.holds() {
+        let tags: Vec<u64> = linear.blocks_of(3).flat_map(|(_, block)| block.tags.iter().copied()).collect();
+        let some = certificate.failures.iter().take(LISTED).map(|f| format!("{} {}", f.cell, tags[f.element]));
+        let count = certificate.failures.len();
+        let more = if count > LISTED { ", ..." } else { "" };
+        let listed = some.collect::<Vec<_>>().join(", ") + more;
+        return Err(PipelineError::Inverted { mesh, count, listed });
+    }
+    Ok(linear)
+}
+
+fn scaled(job: &Job, scale: f64) -> ReadOptions {
+    ReadOptions { scale, ..job.reading.clone() }
+}
+
+/// Ties the mesh to its CAD, read again in another unit where the job asks for the unit that fits.
+fn tie(job: &Job, linear: &Mesh, boundary: &Boundary, model: Model) -> Result<(Tied, Association), PipelineError> {
+    let attempt = |model: &Model| -> Result<Association, PipelineError> {
+        let claims = match &job.linkage {
+            Some(path) => associate::read_linkage(path, linear, boundary, model)?,
+            None => Claims::by_tags(linear, boundary, model),
+        };
+        let tied = associate::associate(linear, boundary, model, &claims, job.max_offset);
+        tied.map_err(|cause| refused(&job.mesh, &job.cad, cause))
+    };
+    let first = attempt(&model);
+    match first {
+        Err(PipelineError::Associate { cause: AssociateError::Scale { factor, .. }, .. })
+            if job.cad_scale.is_none() =>
+        {
+            let model = Model::read(&job.cad, &scaled(job, factor))?;
+            let association = attempt(&model)?;
+            Ok((Tied { unit: model.unit().name.clone(), scale: factor }, association))
+        }
+        other => {
+            let tied = Tied { unit: model.unit().name.clone(), scale: job.cad_scale.unwrap_or(1.0) };
+            other.map(|association| (tied, association))
+        }
+    }
+}
+
+/// The unit of the CAD as it was used.
+struct Tied {
+    unit: String,
+    scale: f64,
 }
 
 fn refused(mesh: &Path, cad: &Path, cause: AssociateError) -> PipelineError {

@@ -7,7 +7,6 @@
 
 use cad::{EntityId, Evaluation, Foot, Group};
 use glam::DVec3;
-use rayon::prelude::*;
 
 use crate::associate::{Association, Boundary, Host};
 use crate::element::{Cell, Order, interior_count, interior_extension, interior_start};

@@ -6,8 +6,8 @@
 pub mod basis;
 pub mod bernstein;
 mod cell;
-mod extension;
 pub mod derivative;
+mod extension;
 mod lattice;
 mod net;
 pub mod order;

@@ -19,6 +19,8 @@ pub use field::{Field, Support, Values};
 
 use crate::mesh::Mesh;
 
+const UNKNOWN_NAME: &str = "the name ends in no known format; name it .msh or .vtu";
+
 /// Bytes asked of the system at a time.
 const BUFFER: usize = 1 << 20;
 
@@ -79,6 +81,32 @@ pub fn read(path: &Path) -> Result<Mesh, Error> {
     }
 }
 
+/// Whether a mesh could be written under this name: to be asked before long work.
+///
+/// # Errors
+/// [`Error::Format`] for a name of no known format, [`Error::Io`] where the folder does not exist.
+pub fn check_output(path: &Path) -> Result<(), Error> {
+    let known = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("msh") || e.eq_ignore_ascii_case("vtu"));
+    if !known {
+        return Err(Error::Format { file: path.to_path_buf(), reason: UNKNOWN_NAME.into() });
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    match std::fs::metadata(folder) {
+        Ok(metadata) if metadata.is_dir() => Ok(()),
+        Ok(_) => Err(std::io::Error::other("its folder is no folder")),
+        Err(error) => Err(error),
+    }
+    .map_err(|source| Error::Io { file: path.to_path_buf(), action: "create", source })
+}
+
+/// Writes bytes under a temporary name, renamed when complete.
+///
+/// # Errors
+/// [`Error::Io`].
+pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    output::write_whole(path, |out| Ok(std::io::Write::write_all(out, bytes)?))
+}
+
 /// Writes a mesh file; the format is that of the name's extension.
 ///
 /// The file appears under its name only when it is complete. Equal meshes make equal bytes.
@@ -93,9 +121,6 @@ pub fn write(path: &Path, mesh: &Mesh, options: &WriteOptions<'_>) -> Result<(),
             output::write_whole(path, |out| msh::write(out, mesh, options.msh_version, options.msh_encoding))
         }
         Some("vtu") => output::write_whole(path, |out| vtu::write(out, mesh, options.fields, options.volume_only)),
-        _ => {
-            let reason = "the name ends in no known format; name it .msh or .vtu".into();
-            Err(Error::Format { file: path.to_path_buf(), reason })
-        }
+        _ => Err(Error::Format { file: path.to_path_buf(), reason: UNKNOWN_NAME.into() }),
     }
 }

@@ -6,8 +6,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{
-    CellReport, CertificateReport, Input, Nodes, PatchReport, Projections, Report, SCHEMA, SmoothingReport, StepReport,
-    WorstElement,
+    CellReport, CertificateReport, GivenUpFace, Input, Nodes, PatchReport, Projections, Report, SCHEMA,
+    SmoothingReport, StepReport, WorstElement,
 };
 use crate::associate::Host;
 use crate::certify::{Certificate, Judged, Verdict};
@@ -15,6 +15,7 @@ use crate::element::{Cell, Order, Samples, basis};
 use crate::formats::{Field, Support, Values};
 use crate::mesh::{EntityKey, Mesh};
 use crate::pipeline::{Curved, Job};
+use crate::retreat::GivenUp;
 
 /// Elements listed as worst.
 const LISTED: usize = 10;
@@ -42,7 +43,8 @@ pub fn report(job: &Job, curved: &Curved) -> Report {
         cells: cells(curved),
         patches: patches(curved),
         unlinked_faces: curved.association.faces.iter().filter(|h| !linked(h)).count(),
-        certificate: certificate(mesh, &curved.certificate),
+        given_up: curved.given_up.iter().map(|given| given_up(curved, given)).collect(),
+        certificate: CertificateReport::new(mesh, &curved.certificate),
         smoothing: SmoothingReport {
             sweeps: curved.smoothed.sweeps,
             stopped: curved.smoothed.stopped,
@@ -124,24 +126,40 @@ fn distance(curved: &Curved, face: usize) -> Option<f64> {
     far.reduce(f64::max)
 }
 
-fn certificate(mesh: &Mesh, certificate: &Certificate) -> CertificateReport {
-    let tags: Vec<u64> = mesh.blocks_of(3).flat_map(|(_, block)| block.tags.iter().copied()).collect();
-    let worst = |judged: &Judged| WorstElement {
-        element: tags[judged.element],
-        cell: judged.cell.name(),
-        verdict: match judged.finding.verdict {
-            Verdict::Valid => "valid",
-            Verdict::Invalid { .. } => "invalid",
-            Verdict::Undecided => "undecided",
-        },
-        relative: [judged.finding.relative.lower, judged.finding.relative.upper],
-        place: judged.place.to_array(),
-    };
-    let weakest = certificate.worst_relative.iter().filter(|j| j.finding.verdict.is_valid()).take(LISTED);
-    CertificateReport {
-        relative: [certificate.relative.lower, certificate.relative.upper],
-        scaled: [certificate.scaled.lower, certificate.scaled.upper],
-        worst: certificate.failures.iter().chain(weakest).map(worst).collect(),
+fn given_up(curved: &Curved, given: &GivenUp) -> GivenUpFace {
+    let face = &curved.boundary.faces[given.face];
+    let corners = &curved.boundary.corners[given.face];
+    let middle: DVec3 = corners.iter().map(|n| curved.mesh.points[n.index()]).sum::<DVec3>() / corners.len() as f64;
+    GivenUpFace {
+        element: curved.mesh.blocks[face.block].tags[face.element],
+        entity: face.entity.to_string(),
+        share: given.share,
+        place: middle.to_array(),
+    }
+}
+
+impl CertificateReport {
+    /// A certificate with the file's element numbers.
+    #[must_use]
+    pub fn new(mesh: &Mesh, certificate: &Certificate) -> CertificateReport {
+        let tags: Vec<u64> = mesh.blocks_of(3).flat_map(|(_, block)| block.tags.iter().copied()).collect();
+        let worst = |judged: &Judged| WorstElement {
+            element: tags[judged.element],
+            cell: judged.cell.name(),
+            verdict: match judged.finding.verdict {
+                Verdict::Valid => "valid",
+                Verdict::Invalid { .. } => "invalid",
+                Verdict::Undecided => "undecided",
+            },
+            relative: [judged.finding.relative.lower, judged.finding.relative.upper],
+            place: judged.place.to_array(),
+        };
+        let weakest = certificate.worst_relative.iter().filter(|j| j.finding.verdict.is_valid()).take(LISTED);
+        CertificateReport {
+            relative: [certificate.relative.lower, certificate.relative.upper],
+            scaled: [certificate.scaled.lower, certificate.scaled.upper],
+            worst: certificate.failures.iter().chain(weakest).map(worst).collect(),
+        }
     }
 }
 

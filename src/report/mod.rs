@@ -4,6 +4,7 @@
 //! goes away. Lengths are in the mesh's unit, times in seconds, memory in bytes.
 
 mod build;
+mod check;
 mod text;
 
 use serde::Serialize;
@@ -11,6 +12,7 @@ use serde::Serialize;
 use crate::smooth::Summary;
 
 pub use build::{fields, report};
+pub use check::CheckReport;
 
 /// Name and version of the JSON document.
 pub const SCHEMA: &str = "sagitta-report-1";
@@ -36,6 +38,8 @@ pub struct Report {
     pub patches: Vec<PatchReport>,
     /// Boundary faces that are tied to no CAD face.
     pub unlinked_faces: usize,
+    /// Boundary faces taken off the CAD, so that the elements behind them are valid.
+    pub given_up: Vec<GivenUpFace>,
     /// Bounds of the mesh's smallest J / J_c and scaled Jacobian.
     pub certificate: CertificateReport,
     /// What the smoother did.
@@ -111,6 +115,19 @@ pub struct PatchReport {
     pub farthest: Option<f64>,
     /// Largest move of a linear node onto the CAD.
     pub largest_offset: f64,
+}
+
+/// A boundary face that is not on the CAD as it should be.
+#[derive(Clone, Debug, Serialize)]
+pub struct GivenUpFace {
+    /// Its number in the file.
+    pub element: u64,
+    /// The mesh entity that it belongs to.
+    pub entity: String,
+    /// The share of its displacement that is left, 0 to 1.
+    pub share: f64,
+    /// Its middle.
+    pub place: [f64; 3],
 }
 
 /// The certificate of the whole mesh.

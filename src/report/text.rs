@@ -2,7 +2,10 @@
 
 use std::fmt;
 
-use super::Report;
+use super::{CertificateReport, Report};
+
+/// Failures that are listed.
+const LISTED: usize = 10;
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -20,7 +23,8 @@ impl fmt::Display for Report {
         for note in &self.notes {
             writeln!(f, "note: {note}")?;
         }
-        self.verdict(f)
+        self.given_up(f)?;
+        self.certificate.verdict(self.certified, f)
     }
 }
 
@@ -31,11 +35,7 @@ impl Report {
         writeln!(f, "{cell:<10}{count:>10}{wcn:>12}{mean:>9}{jac:>12}{proven:>14}{valid:>10}")?;
         for c in &self.cells {
             let (min, mean, jac, proven) = (c.c_wcn_min, c.c_wcn_mean, c.c_jac_min, c.certified_min);
-            writeln!(
-                f,
-                "{:<10}{:>10}{min:>12.4}{mean:>9.4}{jac:>12.4}{proven:>14.4}{:>10}",
-                c.cell, c.count, c.valid
-            )?;
+            writeln!(f, "{:<10}{:>10}{min:>12.4}{mean:>9.4}{jac:>12.4}{proven:>14.4}{:>10}", c.cell, c.count, c.valid)?;
         }
         Ok(())
     }
@@ -44,13 +44,35 @@ impl Report {
         let [patch, faces, off, offset, on] = ["patch", "faces", "off CAD", "node offset", "CAD group"];
         writeln!(f, "{patch:<24}{faces:>9}{off:>12}{offset:>13}  {on}")?;
         for p in &self.patches {
-            let name = if p.names.is_empty() { p.entity.clone() } else { format!("{} {}", p.names.join(","), p.entity) };
+            let name =
+                if p.names.is_empty() { p.entity.clone() } else { format!("{} {}", p.names.join(","), p.entity) };
             let far = p.farthest.map_or("-".to_owned(), |d| format!("{d:.2e}"));
             let on = if p.surfaces.is_empty() { "not tied".to_owned() } else { p.surfaces.join("; ") };
             writeln!(f, "{name:<24}{:>9}{far:>12}{:>13.2e}  {on}", p.faces, p.largest_offset)?;
         }
         if self.unlinked_faces > 0 {
             writeln!(f, "{} boundary faces are not tied to the CAD", self.unlinked_faces)?;
+        }
+        Ok(())
+    }
+
+    fn given_up(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.given_up.is_empty() {
+            return Ok(());
+        }
+        writeln!(
+            f,
+            "given up: {} boundary faces are not on the CAD, so that all elements are valid",
+            self.given_up.len()
+        )?;
+        for face in self.given_up.iter().take(LISTED) {
+            let [x, y, z] = face.place;
+            let percent = 100.0 * face.share;
+            writeln!(
+                f,
+                "  face {} of {}: {percent:.0} % of its curve, near ({x:.6}, {y:.6}, {z:.6})",
+                face.element, face.entity
+            )?;
         }
         Ok(())
     }
@@ -69,15 +91,18 @@ impl Report {
         let memory = self.peak_memory as f64 / 1e6;
         writeln!(f, "seconds: {}; {} threads, peak memory {memory:.0} MB", steps.join(", "), self.threads)
     }
+}
 
-    fn verdict(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [lower, upper] = self.certificate.relative;
-        if self.certified {
+impl CertificateReport {
+    /// The verdict in words.
+    pub(super) fn verdict(&self, certified: bool, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [lower, upper] = self.relative;
+        if certified {
             return write!(f, "certified: every element valid, J/Jc >= {lower:.4} everywhere (attained: {upper:.4})");
         }
-        let failures = self.certificate.worst.iter().filter(|w| w.verdict != "valid");
-        write!(f, "NOT certified: {} elements", failures.clone().count())?;
-        for w in failures.take(10) {
+        let failures = || self.worst.iter().filter(|w| w.verdict != "valid");
+        write!(f, "NOT certified: {} elements", failures().count())?;
+        for w in failures().take(LISTED) {
             let [x, y, z] = w.place;
             write!(f, "\n  {} {} {} near ({x:.6}, {y:.6}, {z:.6})", w.verdict, w.cell, w.element)?;
         }

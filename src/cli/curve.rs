@@ -1,0 +1,191 @@
+//! `sagitta curve`.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use cad::ReadOptions;
+use clap::Args;
+
+use super::progress::Teller;
+use super::{DONE, Failure, GIVEN_UP, NOT_CERTIFIED, STOPPED, print, write_json};
+use crate::element::Order;
+use crate::formats::{self, WriteOptions, msh};
+use crate::pipeline::{self, Curved, Job};
+use crate::report::{fields, report};
+use crate::smooth;
+
+/// Options of `sagitta curve`.
+#[derive(Args)]
+pub(super) struct Options {
+    /// The linear mesh: Gmsh MSH 4.1 or 2.2
+    mesh: PathBuf,
+    /// The CAD it was made on: STEP, IGES or BREP
+    #[arg(long, value_name = "FILE")]
+    cad: PathBuf,
+    /// MeshLink file that ties mesh and CAD together; without it the mesh's entity tags do
+    #[arg(long, value_name = "LINK.xml")]
+    linkage: Option<PathBuf>,
+    /// Polynomial order of the curved mesh: 2, 3 or 4
+    #[arg(long, value_name = "P", value_parser = order)]
+    order: Order,
+    /// The curved mesh: .msh for solvers, .vtu for pictures
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    /// Write the report as JSON too
+    #[arg(long, value_name = "R.json")]
+    report: Option<PathBuf>,
+    /// Multiply the CAD by this factor, or `auto` to find the one between units that fits
+    #[arg(long, value_name = "F|auto", default_value = "1", value_parser = scale)]
+    cad_scale: Scale,
+    /// How far a linear node may be from its CAD entity; share of the mesh's box
+    #[arg(long, value_name = "SHARE", default_value_t = 1e-3, value_parser = positive)]
+    max_offset: f64,
+    /// Keep all linear nodes where they are
+    #[arg(long)]
+    freeze_linear: bool,
+    /// Keep nodes on curved walls where projection put them
+    #[arg(long)]
+    freeze_walls: bool,
+    /// Elements whose cost is below are worked on (0 to 1)
+    #[arg(long, value_name = "0..1", default_value_t = 0.8, value_parser = share)]
+    threshold: f64,
+    /// Weight of shape against size, equation (2); lower it to 0.3 where Jacobians stay small [default: (p-1)/p]
+    #[arg(long, value_name = "0..1", value_parser = share)]
+    alpha: Option<f64>,
+    /// Most sweeps over the active nodes
+    #[arg(long, value_name = "N", default_value_t = 200)]
+    max_sweeps: usize,
+    /// Density of the closing survey, in multiples of the order
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u8).range(1..=16))]
+    survey_factor: u8,
+    /// Threads to use [default: all cores]
+    #[arg(long, value_name = "N")]
+    threads: Option<NonZeroUsize>,
+    /// Write the mesh even if not every element is proven valid
+    #[arg(long)]
+    keep_invalid: bool,
+    /// VTU: leave the boundary elements out, for readers that refuse mixed dimensions
+    #[arg(long)]
+    volume_only: bool,
+    /// Version of the MSH file
+    #[arg(long, value_name = "4.1|2.2", default_value = "4.1", value_parser = msh_version)]
+    msh_version: msh::Version,
+    /// MSH: write text rather than binary
+    #[arg(long)]
+    ascii: bool,
+    /// Seconds after which reading the CAD is given up
+    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = positive)]
+    cad_timeout: f64,
+    /// No progress on stderr
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// The factor of `--cad-scale`; `None` is `auto`.
+#[derive(Clone, Copy, Debug)]
+struct Scale(Option<f64>);
+
+fn order(text: &str) -> Result<Order, String> {
+    let wrong = || format!("{text:?} is not an order: give 2, 3 or 4");
+    let order = text.trim_start_matches(['P', 'p']).parse::<usize>().ok().and_then(|p| Order::new(p).ok());
+    order.filter(|&order| order > Order::LINEAR).ok_or_else(wrong)
+}
+
+fn scale(text: &str) -> Result<Scale, String> {
+    if text == "auto" { Ok(Scale(None)) } else { positive(text).map(|factor| Scale(Some(factor))) }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|v| v.is_finite() && *v > 0.0);
+    value.ok_or_else(|| format!("{text:?} is not a positive number"))
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|v| (0.0..=1.0).contains(v));
+    value.ok_or_else(|| format!("{text:?} is not between 0 and 1"))
+}
+
+fn msh_version(text: &str) -> Result<msh::Version, String> {
+    match text {
+        "4.1" => Ok(msh::Version::V4_1),
+        "2.2" => Ok(msh::Version::V2_2),
+        _ => Err(format!("{text:?} is no version that is written: give 4.1 or 2.2")),
+    }
+}
+
+impl Options {
+    fn job(&self) -> Job {
+        Job {
+            mesh: self.mesh.clone(),
+            cad: self.cad.clone(),
+            linkage: self.linkage.clone(),
+            order: self.order,
+            max_offset: self.max_offset,
+            freeze_linear: self.freeze_linear,
+            freeze_walls: self.freeze_walls,
+            cad_scale: self.cad_scale.0,
+            reading: ReadOptions { timeout: Duration::from_secs_f64(self.cad_timeout), ..ReadOptions::default() },
+            smoothing: smooth::Settings {
+                threshold: self.threshold,
+                alpha: self.alpha,
+                max_sweeps: self.max_sweeps,
+                survey_factor: usize::from(self.survey_factor),
+            },
+        }
+    }
+}
+
+/// Curves a mesh, writes it, and tells how it went.
+pub(super) fn run(options: &Options) -> Result<u8, Failure> {
+    formats::check_output(&options.output)?;
+    if let Some(threads) = options.threads {
+        rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global()?;
+    }
+    let job = options.job();
+    let mut teller = Teller::new(options.quiet);
+    let curved = pipeline::curve(&job, &mut teller);
+    teller.finish();
+    let curved = curved?;
+    let report = report(&job, &curved);
+    let certified = report.certified;
+    if certified || options.keep_invalid {
+        write(options, &curved)?;
+    }
+    if let Some(path) = &options.report {
+        write_json(path, &report)?;
+    }
+    print(&report.to_string())?;
+    let written = options.output.display();
+    if !certified && !options.keep_invalid {
+        eprintln!("sagitta: {written}: not written, as not every element is proven valid (--keep-invalid writes it)");
+    } else {
+        print(&format!("written: {written}"))?;
+    }
+    Ok(exit_code(&curved))
+}
+
+fn write(options: &Options, curved: &Curved) -> Result<(), Failure> {
+    let fields = fields(curved);
+    let encoding = if options.ascii { msh::Encoding::Ascii } else { msh::Encoding::Binary };
+    let how = WriteOptions {
+        msh_version: options.msh_version,
+        msh_encoding: encoding,
+        volume_only: options.volume_only,
+        fields: &fields,
+    };
+    formats::write(&options.output, &curved.mesh, &how)?;
+    Ok(())
+}
+
+fn exit_code(curved: &Curved) -> u8 {
+    if !curved.certificate.holds() {
+        NOT_CERTIFIED
+    } else if curved.smoothed.stopped {
+        STOPPED
+    } else if !curved.given_up.is_empty() {
+        GIVEN_UP
+    } else {
+        DONE
+    }
+}

@@ -1,0 +1,124 @@
+//! `sagitta info`.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use cad::{Aabb, Model, ReadOptions};
+use clap::Args;
+
+use super::{DONE, Failure, print};
+use crate::formats;
+use crate::mesh::Mesh;
+
+/// Options of `sagitta info`.
+#[derive(Args)]
+pub(super) struct Options {
+    /// A CAD, mesh or linkage file
+    file: PathBuf,
+}
+
+/// Tells what a file holds; its kind is found by its content.
+pub(super) fn run(options: &Options) -> Result<u8, Failure> {
+    let path = &options.file;
+    let text = match kind(path)? {
+        Kind::Mesh => mesh(&formats::read(path)?)?,
+        Kind::Linkage => linkage(path)?,
+        Kind::Cad => model(&Model::read(path, &ReadOptions::default())?)?,
+    };
+    print(&format!("{}: {}", path.display(), text.trim_end()))?;
+    Ok(DONE)
+}
+
+enum Kind {
+    Mesh,
+    Linkage,
+    Cad,
+}
+
+/// The kind of a file by its first bytes.
+fn kind(path: &Path) -> Result<Kind, Failure> {
+    use std::io::Read;
+    let mut head = Vec::new();
+    let open = std::fs::File::open(path).and_then(|file| file.take(4096).read_to_end(&mut head));
+    open.map_err(|error| format!("{}: cannot be read: {error}", path.display()))?;
+    let text = head.trim_ascii_start();
+    let is_mesh = text.starts_with(b"$MeshFormat") || text.starts_with(b"$Comments");
+    Ok(match text {
+        _ if is_mesh => Kind::Mesh,
+        [b'<', ..] | [0xef, 0xbb, 0xbf, b'<', ..] => Kind::Linkage,
+        _ => Kind::Cad,
+    })
+}
+
+fn bounds(bounds: Aabb) -> String {
+    let [a, b] = [bounds.min, bounds.max];
+    format!("box ({}, {}, {}) to ({}, {}, {})", a.x, a.y, a.z, b.x, b.y, b.z)
+}
+
+fn mesh(mesh: &Mesh) -> Result<String, Failure> {
+    let mut text = format!("mesh of order {}, {} nodes\n", mesh.order, mesh.points.len());
+    writeln!(text, "  {}", bounds(Aabb::of_points(mesh.points.iter().copied())))?;
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    for block in &mesh.blocks {
+        *counts.entry(block.cell.name()).or_default() += block.tags.len();
+    }
+    let counts: Vec<String> = counts.iter().map(|(cell, count)| format!("{count} {cell}")).collect();
+    writeln!(text, "  elements: {}", counts.join(", "))?;
+    let mut patches: BTreeMap<_, usize> = BTreeMap::new();
+    for (_, block) in mesh.blocks_of(2) {
+        *patches.entry(block.entity).or_default() += block.tags.len();
+    }
+    for (entity, faces) in patches {
+        writeln!(text, "  {entity}: {faces} faces {}", mesh.names_of(entity).join(","))?;
+    }
+    Ok(text)
+}
+
+fn linkage(path: &Path) -> Result<String, Failure> {
+    let reading = linkage_schema::read_path(path)?;
+    let mut text = String::from("MeshLink document\n");
+    for file in &reading.document.geometry_files {
+        writeln!(text, "  CAD file {:?}: {} references", file.filename, file.references.len())?;
+    }
+    writeln!(text, "  geometry groups: {}", reading.document.geometry_groups.len())?;
+    let resolution = linkage_schema::resolve(&reading.document);
+    for links in &resolution.models {
+        writeln!(text, "  mesh file {:?}:", links.file.filename)?;
+        for sheet in &links.sheets {
+            let faces: usize = sheet.faces.iter().map(|run| run.run.faces().len()).sum();
+            writeln!(text, "    sheet {:?}: {faces} faces", sheet.name().unwrap_or(""))?;
+        }
+        let edges: usize = links.strings.iter().flat_map(|s| &s.edges).map(|run| run.run.edges().len()).sum();
+        writeln!(text, "    {} strings with {edges} edges, {} points", links.strings.len(), links.points.len())?;
+    }
+    for finding in reading.findings.iter().chain(resolution.findings.iter()) {
+        writeln!(text, "  {finding}")?;
+    }
+    Ok(text)
+}
+
+fn model(model: &Model) -> Result<String, Failure> {
+    let (faces, edges, vertices) = (model.faces(), model.edges(), model.vertices());
+    let unit = model.unit();
+    let metres = unit.metres.map_or_else(|| "unknown".to_owned(), |m| format!("{m} m"));
+    let mut text = format!("{}, unit {} ({metres})\n", model.format(), unit.name);
+    writeln!(text, "  {}", bounds(model.bounds()))?;
+    writeln!(text, "  {} faces, {} edges, {} vertices", faces.len(), edges.len(), vertices.len())?;
+    let mut kinds: BTreeMap<_, usize> = BTreeMap::new();
+    faces.iter().for_each(|face| *kinds.entry(face.kind).or_default() += 1);
+    let kinds: Vec<String> = kinds.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
+    writeln!(text, "  faces by kind: {}", kinds.join(", "))?;
+    for face in faces {
+        let label = &face.label;
+        writeln!(text, "  {} {} {} {:?}", face.id, face.kind, label.reference, label.name)?;
+    }
+    for group in model.groups() {
+        let members: Vec<String> = group.faces.iter().map(ToString::to_string).collect();
+        writeln!(text, "  group {:?}: {}", group.name, members.join(", "))?;
+    }
+    for dropped in model.dropped() {
+        writeln!(text, "  dropped by the reader: {dropped}")?;
+    }
+    Ok(text)
+}

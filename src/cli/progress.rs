@@ -1,0 +1,84 @@
+//! Progress on stderr: a live line on a terminal, plain lines elsewhere.
+
+use std::io::IsTerminal;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::pipeline::{Observer, Step};
+use crate::smooth::Progress;
+
+/// Plain lines come no more often than this.
+const INTERVAL: Duration = Duration::from_secs(2);
+
+/// Tells how the work goes on.
+pub(super) struct Teller {
+    bar: Option<ProgressBar>,
+    quiet: bool,
+    start: Instant,
+    smoothing: Option<Instant>,
+    last: Option<Instant>,
+}
+
+impl Teller {
+    pub(super) fn new(quiet: bool) -> Teller {
+        let bar = (!quiet && std::io::stderr().is_terminal()).then(spinner);
+        Teller { bar, quiet, start: Instant::now(), smoothing: None, last: None }
+    }
+
+    /// Takes the live line away.
+    pub(super) fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+
+    fn say(&self, text: String) {
+        match &self.bar {
+            Some(bar) => bar.set_message(text),
+            None if self.quiet => {}
+            None => eprintln!("[{:7.1} s] {text}", self.start.elapsed().as_secs_f64()),
+        }
+    }
+}
+
+fn spinner() -> ProgressBar {
+    let bar = ProgressBar::new_spinner();
+    if let Ok(style) = ProgressStyle::with_template("{spinner} [{elapsed}] {wide_msg}") {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
+}
+
+impl Observer for Teller {
+    fn step(&mut self, step: Step) {
+        if step == Step::Smooth {
+            self.smoothing = Some(Instant::now());
+        }
+        self.say(format!("step {} of {}: {}", step as usize + 1, Step::ALL.len(), step.name()));
+    }
+
+    fn progress(&mut self, progress: &Progress) -> bool {
+        let due = self.bar.is_some() || self.last.is_none_or(|last| last.elapsed() >= INTERVAL);
+        if due {
+            self.last = Some(Instant::now());
+            let spent = self.smoothing.map_or(0.0, |start| start.elapsed().as_secs_f64());
+            let left = spent / progress.sweep.max(1) as f64 * (progress.max_sweeps - progress.sweep) as f64;
+            self.say(format!(
+                "smooth: stage {}, sweep {} of at most {}, {} active nodes, worst cost {:.4} near ({:.4}, {:.4}, {:.4}), \
+                 {} inverted, at most {left:.0} s left",
+                progress.stage,
+                progress.sweep,
+                progress.max_sweeps,
+                progress.active_nodes,
+                progress.worst,
+                progress.at.x,
+                progress.at.y,
+                progress.at.z,
+                progress.inverted
+            ));
+        }
+        true
+    }
+}

@@ -1,0 +1,78 @@
+//! What is told of a mesh that was only certified.
+
+use std::fmt;
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::CertificateReport;
+use crate::certify::Certificate;
+use crate::element::Cell;
+use crate::mesh::Mesh;
+
+/// Name and version of the JSON document.
+const SCHEMA: &str = "sagitta-check-1";
+
+/// The certificate of a mesh file.
+#[derive(Clone, Debug, Serialize)]
+pub struct CheckReport {
+    /// `sagitta-check-1`.
+    pub schema: &'static str,
+    /// The file.
+    pub mesh: String,
+    /// Polynomial order.
+    pub order: u8,
+    /// Whether every element is proven valid.
+    pub certified: bool,
+    /// By kind of cell: how many, and how many are valid, invalid, undecided.
+    pub cells: Vec<CellCounts>,
+    /// Minima and the elements that have them.
+    pub certificate: CertificateReport,
+}
+
+/// Verdicts on the elements of one kind.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[allow(missing_docs)] // the names say it
+pub struct CellCounts {
+    pub cell: &'static str,
+    pub count: usize,
+    pub valid: usize,
+    pub invalid: usize,
+    pub undecided: usize,
+}
+
+impl CheckReport {
+    /// The report of a mesh file's certificate.
+    #[must_use]
+    pub fn new(path: &Path, mesh: &Mesh, certificate: &Certificate) -> CheckReport {
+        let tallies = certificate.tallies.iter().zip(Cell::VOLUME).filter(|(tally, _)| tally.elements > 0);
+        let counts = |(tally, cell): (&crate::certify::Tally, Cell)| CellCounts {
+            cell: cell.name(),
+            count: tally.elements,
+            valid: tally.valid,
+            invalid: tally.invalid,
+            undecided: tally.undecided,
+        };
+        CheckReport {
+            schema: SCHEMA,
+            mesh: path.display().to_string(),
+            order: mesh.order.into(),
+            certified: certificate.holds(),
+            cells: tallies.map(counts).collect(),
+            certificate: CertificateReport::new(mesh, certificate),
+        }
+    }
+}
+
+impl fmt::Display for CheckReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}: P{}", self.mesh, self.order)?;
+        for c in &self.cells {
+            let (cell, count) = (c.cell, c.count);
+            writeln!(f, "  {count} {cell}: {} valid, {} invalid, {} undecided", c.valid, c.invalid, c.undecided)?;
+        }
+        let [lower, upper] = self.certificate.scaled;
+        writeln!(f, "  smallest scaled Jacobian between {lower:.4} and {upper:.4}")?;
+        self.certificate.verdict(self.certified, f)
+    }
+}

@@ -1,0 +1,107 @@
+//! Where elements stay invalid: the displacement of the nodes around them is taken back, just as far as it must be.
+//!
+//! Each round halves the displacement of all nodes of the elements that are not proven valid (below an eighth it is taken
+//! back whole) and of their neighbours, and certifies what that touches. A straight mesh is the linear mesh, which was
+//! certified when it was read, so the rounds end in a valid mesh; every wall face that is no longer on the CAD is listed.
+
+use glam::DVec3;
+
+use crate::associate::{Association, Boundary, Host};
+use crate::certify::{self, Buffer, Certificate, Elements, MeshElements};
+use crate::element::{Cell, Order};
+use crate::mesh::Mesh;
+
+/// A share of the displacement below this counts as none.
+const LEAST_SHARE: f64 = 0.125;
+/// More rounds than it takes to straighten any patch that fits a mesh.
+const MOST_ROUNDS: usize = 1000;
+
+/// A boundary face that was taken off the CAD so that the elements behind it are valid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GivenUp {
+    /// Its index in [`Boundary::faces`].
+    pub face: usize,
+    /// The share of its displacement that is left, 0 to 1: the least of its nodes.
+    pub share: f64,
+}
+
+/// Takes displacements back until every element is proven valid; returns the faces given up and the certificate.
+#[must_use]
+pub fn retreat(
+    mesh: &mut Mesh,
+    straight: &[DVec3],
+    linear_nodes: usize,
+    boundary: &Boundary,
+    association: &Association,
+    certificate: Certificate,
+) -> (Vec<GivenUp>, Certificate) {
+    if certificate.holds() {
+        return (Vec::new(), certificate);
+    }
+    let settings = certify::Settings::default();
+    let curved = mesh.points.clone();
+    let mut shares = vec![1.0; curved.len()];
+    let mut failing: Vec<usize> = certificate.failures.iter().map(|judged| judged.element).collect();
+    for _ in 0..MOST_ROUNDS {
+        let touched = take_back(mesh, &failing, &mut shares);
+        for (n, &share) in shares.iter().enumerate() {
+            if share < 1.0 {
+                mesh.points[n] = straight[n] + (curved[n] - straight[n]) * share;
+            }
+        }
+        let subset = Subset { whole: MeshElements::new(mesh, Some(&straight[..linear_nodes])), elements: &touched };
+        let outcome = certify::certify(&subset, &settings);
+        failing = outcome.failures.iter().map(|judged| touched[judged.element]).collect();
+        if failing.is_empty() {
+            break;
+        }
+    }
+    let certificate = certify::mesh(mesh, Some(&straight[..linear_nodes]), &settings);
+    (given_up(mesh, boundary, association, &shares), certificate)
+}
+
+/// Halves the shares around failing elements; returns all elements that have a node with a changed share.
+fn take_back(mesh: &Mesh, failing: &[usize], shares: &mut [f64]) -> Vec<usize> {
+    let mut changed = vec![false; shares.len()];
+    let elements: Vec<&[crate::mesh::NodeId]> =
+        mesh.blocks_of(3).flat_map(|(_, block)| block.elements(mesh.order)).collect();
+    failing.iter().flat_map(|&e| elements[e]).for_each(|n| changed[n.index()] = true);
+    let near = |changed: &[bool], e: usize| elements[e].iter().any(|n| changed[n.index()]);
+    let ring: Vec<usize> = (0..elements.len()).filter(|&e| near(&changed, e)).collect();
+    ring.iter().flat_map(|&e| elements[e]).for_each(|n| changed[n.index()] = true);
+    for (share, _) in shares.iter_mut().zip(&changed).filter(|(_, changed)| **changed) {
+        *share = if *share <= LEAST_SHARE { 0.0 } else { 0.5 * *share };
+    }
+    (0..elements.len()).filter(|&e| near(&changed, e)).collect()
+}
+
+/// The faces tied to the CAD that have a node with less than its whole displacement.
+fn given_up(mesh: &Mesh, boundary: &Boundary, association: &Association, shares: &[f64]) -> Vec<GivenUp> {
+    let mut faces = Vec::new();
+    for (face, own) in boundary.faces.iter().enumerate() {
+        let block = &mesh.blocks[own.block];
+        let stride = block.stride(mesh.order);
+        let nodes = &block.nodes[own.element * stride..][..stride];
+        let share = nodes.iter().map(|n| shares[n.index()]).fold(1.0, f64::min);
+        if share < 1.0 && matches!(association.faces[face], Host::Surface(_)) {
+            faces.push(GivenUp { face, share });
+        }
+    }
+    faces
+}
+
+/// Some elements of a mesh.
+struct Subset<'a> {
+    whole: MeshElements<'a>,
+    elements: &'a [usize],
+}
+
+impl Elements for Subset<'_> {
+    fn count(&self) -> usize {
+        self.elements.len()
+    }
+
+    fn read(&self, element: usize, into: &mut Buffer) -> (Cell, Order) {
+        self.whole.read(self.elements[element], into)
+    }
+}
