@@ -214,7 +214,7 @@ mod tests {
         let n = points.len();
         let shuffle = |c: usize| (c * 3 + 1) % n;
         let permuted: Vec<DVec3> = (0..n).map(|i| points[(0..n).find(|&c| shuffle(c) == i).unwrap_or(i)]).collect();
-        let shuffled = (0..n).map(|c| if n % 3 == 0 { c } else { shuffle(c) });
+        let shuffled = (0..n).map(|c| if n.is_multiple_of(3) { c } else { shuffle(c) });
         let block = Block {
             cell,
             entity: EntityKey::new(cell.dimension() as u8, 7),
@@ -223,7 +223,7 @@ mod tests {
             nodes: shuffled.map(|c| NodeId::new(c).unwrap()).collect(),
         };
         Mesh {
-            points: if n % 3 == 0 { points } else { permuted },
+            points: if n.is_multiple_of(3) { points } else { permuted },
             node_tags: (1..=n as u64).collect(),
             node_entities: vec![None; n],
             blocks: vec![block],

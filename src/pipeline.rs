@@ -97,7 +97,7 @@ pub enum PipelineError {
     #[error(transparent)]
     Linkage(#[from] LinkageError),
     #[error("{mesh} and {cad}: {cause}", mesh = mesh.display(), cad = cad.display())]
-    Associate { mesh: PathBuf, cad: PathBuf, cause: AssociateError },
+    Associate { mesh: PathBuf, cad: PathBuf, cause: Box<AssociateError> },
     #[error("{mesh}: {cause}", mesh = mesh.display())]
     TooMany { mesh: PathBuf, cause: TooMany },
     #[error("{mesh}: has no volume elements (tets, pyramids, prisms, hexes): nothing to curve", mesh = mesh.display())]
@@ -230,19 +230,14 @@ fn tie(job: &Job, linear: &Mesh, boundary: &Boundary, model: Model) -> Result<(T
         tied.map_err(|cause| refused(&job.mesh, &job.cad, cause))
     };
     let first = attempt(&model);
-    match first {
-        Err(PipelineError::Associate { cause: AssociateError::Scale { factor, .. }, .. })
-            if job.cad_scale.is_none() =>
-        {
-            let model = Model::read(&job.cad, &scaled(job, factor))?;
-            let association = attempt(&model)?;
-            Ok((Tied { unit: model.unit().name.clone(), scale: factor }, association))
-        }
-        other => {
-            let tied = Tied { unit: model.unit().name.clone(), scale: job.cad_scale.unwrap_or(1.0) };
-            other.map(|association| (tied, association))
-        }
+    if let (None, Err(PipelineError::Associate { cause, .. })) = (job.cad_scale, &first)
+        && let AssociateError::Scale { factor, .. } = **cause
+    {
+        let model = Model::read(&job.cad, &scaled(job, factor))?;
+        let association = attempt(&model)?;
+        return Ok((Tied { unit: model.unit().name.clone(), scale: factor }, association));
     }
+    Ok((Tied { unit: model.unit().name.clone(), scale: job.cad_scale.unwrap_or(1.0) }, first?))
 }
 
 /// The unit of the CAD as it was used.
@@ -252,7 +247,7 @@ struct Tied {
 }
 
 fn refused(mesh: &Path, cad: &Path, cause: AssociateError) -> PipelineError {
-    PipelineError::Associate { mesh: mesh.to_owned(), cad: cad.to_owned(), cause }
+    PipelineError::Associate { mesh: mesh.to_owned(), cad: cad.to_owned(), cause: Box::new(cause) }
 }
 
 /// Times the steps and tells the observer.

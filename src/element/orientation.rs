@@ -113,7 +113,7 @@ mod tests {
             let unit: Vec<DVec3> = cell.corners().iter().map(|c| DVec3::from(c.map(f64::from))).collect();
             for order in Order::all() {
                 let place = |corners: &[usize], node: usize| -> DVec3 {
-                    let at = lattice(cell, order)[interior_start(cell, order) + node].map(|x| f64::from(x));
+                    let at = lattice(cell, order)[interior_start(cell, order) + node].map(f64::from);
                     let weights = super::super::basis::values(cell, Order::LINEAR, at.map(|x| x / order.get() as f64));
                     corners.iter().zip(weights).map(|(&c, w)| unit[c] * w).sum()
                 };

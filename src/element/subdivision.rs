@@ -14,7 +14,7 @@ use super::{Cell, Order, lattice};
 /// Corner tetrahedra (local nodes) of an element's sub-elements; one list per way to cut the element.
 #[must_use]
 pub fn corner_tets(cell: Cell, order: Order) -> &'static [Vec<[u8; 4]>] {
-    static TABLES: [[OnceLock<Vec<Vec<[u8; 4]>>>; 4]; 8] = [const { [const { OnceLock::new() }; 4] }; 8];
+    static TABLES: [[OnceLock<Cuts>; 4]; 8] = [const { [const { OnceLock::new() }; 4] }; 8];
     TABLES[cell as usize][order.get() - 1].get_or_init(|| match cell {
         Cell::Tet => (0..3).map(|diagonal| tet(order, diagonal)).collect(),
         Cell::Pyramid => vec![subcells(cell, order, &PYRAMID_CORNERS)],
@@ -23,6 +23,9 @@ pub fn corner_tets(cell: Cell, order: Order) -> &'static [Vec<[u8; 4]>] {
         _ => Vec::new(),
     })
 }
+
+/// The lists of corner tetrahedra of one cell, one a way to cut it.
+type Cuts = Vec<Vec<[u8; 4]>>;
 
 /// Offsets of a corner tetrahedron from the lattice point of its sub-element.
 type Offsets = [[usize; 3]; 4];
