@@ -90,7 +90,7 @@ impl Spline {
         let span = self.knots.span(t);
         let (local, scale) = self.knots.local(span, t);
         let n = self.degree + 1;
-        let basis = Bernstein::at(self.degree, local);
+        let basis: Bernstein = Bernstein::at(self.degree, local);
         let mut h = [DVec4::ZERO; 6];
         for (i, &p) in self.poles[span * n..][..n].iter().enumerate() {
             h[0] += basis.b[0][i] * p;

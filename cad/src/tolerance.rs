@@ -22,6 +22,9 @@ pub const LEAF_MARGIN: f64 = 1e-5;
 /// Newton steps on OCCT's own surface after the search.
 pub const POLISH_LIMIT: usize = 4;
 
+/// Residual, as for [`ORTHOGONAL`], below which polishing has nothing to gain.
+pub const POLISHED: f64 = 1e-13;
+
 /// Cuts of leaves that one query may spend to prove its answer; beyond it the foot is reported as not proven.
 pub const CUT_BUDGET: usize = 400;
 
