@@ -7,7 +7,7 @@ use crate::bezier::{Knots, patch_d2, project, quotient, restrict};
 use crate::curve::{Curve, Hull, axes, homogeneous, knots_within, ranges, shift_into};
 use glam::{DVec3, DVec4};
 use opencascade_sys as sys;
-use std::f64::consts::FRAC_PI_4;
+use std::f64::consts::{FRAC_PI_4, TAU};
 use std::sync::Arc;
 
 /// Handle of one of OCCT's surfaces, shared by threads.
@@ -277,6 +277,17 @@ impl Chart {
 
     fn at(&self, [u, v]: [f64; 2]) -> DVec3 {
         self.d2(u, v)[0]
+    }
+
+    /// Periods in the two directions, 0 for none.
+    pub(crate) fn periods(&self) -> [f64; 2] {
+        match self {
+            Self::Spun { meridian, .. } => [TAU, meridian.period()],
+            Self::Swept { profile, .. } => [profile.period(), 0.0],
+            Self::Net(net) => net.period,
+            Self::Offset { basis, .. } => basis.periods(),
+            Self::Plane { .. } | Self::Opaque { .. } => [0.0; 2],
+        }
     }
 
     /// Direction, 0 or 1, in which the part over `rect` is longer or bends more.

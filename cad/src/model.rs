@@ -73,7 +73,7 @@ pub struct Unit {
 pub struct Label {
     /// Name, trimmed.
     pub name: String,
-    /// `step:#17` or `iges:D19`.
+    /// `step:#17`, `step:#17@4/2` in instance 2 of instance 4 of an assembly, or `iges:D19`.
     pub reference: String,
 }
 

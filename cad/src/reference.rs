@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `name:"WING UPPER"`, `name:WING` | the entity, or the ready group, of that name |
 //! | `step:#17`, `iges:D19` | the entity with that id in its file; an IGES 402 group |
+//! | `step:#17@4/2` | that entity in instance 2 of instance 4 of an assembly; without the path where there is only one |
 //! | `face:7`, `edge-12`, `vertex:3` | by number, 1-based |
 //! | `faces:#17\|#137`, `faces:3\|4` | the edges that two faces share |
 
@@ -105,8 +106,9 @@ impl Model {
     }
 
     fn by_origin(&self, reference: &str, origin: &str) -> Result<Vec<EntityId>, ReferenceError> {
+        let answers = |of: &str| of.strip_prefix(origin).is_some_and(|rest| rest.is_empty() || rest.starts_with('@'));
         let found: Vec<EntityId> =
-            self.labelled().filter(|(_, label)| label.reference == origin).map(|(id, _)| id).collect();
+            self.labelled().filter(|(_, label)| answers(&label.reference)).map(|(id, _)| id).collect();
         match found.len() {
             0 => match self.groups().iter().find(|group| group.reference == origin) {
                 Some(group) => Ok(group.faces.iter().map(|&id| id.into()).collect()),

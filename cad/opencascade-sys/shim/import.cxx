@@ -1,5 +1,6 @@
 #include "import.hxx"
 #include "guard.hxx"
+#include "instances.hxx"
 #include "opencascade-sys/src/lib.rs.h"
 
 #include <BRepBuilderAPI_Transform.hxx>
@@ -19,6 +20,7 @@
 #include <STEPControl_Controller.hxx>
 #include <STEPControl_Reader.hxx>
 #include <StepData_StepModel.hxx>
+#include <StepRepr_NextAssemblyUsageOccurrence.hxx>
 #include <StepRepr_GlobalUnitAssignedContext.hxx>
 #include <StepRepr_RepresentationItem.hxx>
 #include <StepShape_FaceSurface.hxx>
@@ -68,7 +70,7 @@ void remember(Origins& origins, const TopoDS_Shape& shape, Origin origin) {
   if (!fresh && origin.rank < it->second.rank) it->second = origin;
 }
 
-rust::Vec<Label> labels_of(const Shape& shape, const Origins& origins) {
+rust::Vec<Label> labels_of(const Shape& shape, const Origins& origins, const Paths& paths) {
   rust::Vec<Label> labels;
   const std::pair<int, const TopTools_IndexedMapOfShape*> kinds[] = {{0, &shape.faces()}, {1, &shape.edges()}, {2, &shape.vertices()}};
   for (const auto& [kind, map] : kinds)
@@ -78,7 +80,8 @@ rust::Vec<Label> labels_of(const Shape& shape, const Origins& origins) {
       Label label{};
       label.kind = uint8_t(kind);
       label.index = uint32_t(i - 1);
-      label.reference = lossy(it->second.reference);
+      const std::string* path = paths.Seek((*map)(i));
+      label.reference = lossy(it->second.reference + (path ? "@" + *path : ""));
       label.name = lossy(it->second.name);
       labels.push_back(label);
     }
@@ -114,6 +117,7 @@ struct Source {
   std::string unit = "unknown";
   double millimetres = 1;
   Origins origins;
+  std::vector<Instance> instances;
   std::vector<std::tuple<TopoDS_Shape, std::string, std::string>> groups;
   rust::Vec<rust::String> dropped;
 };
@@ -157,6 +161,12 @@ void read_step_unit(const Handle(StepData_StepModel)& model, STEPControl_Reader&
   if (source.millimetres <= 0) throw std::runtime_error("unknown unit of length: " + source.unit);
 }
 
+// The identifier of a usage in an assembly, else its number in the file.
+std::string instance_name(const Handle(StepData_StepModel)& model, const Handle(StepRepr_NextAssemblyUsageOccurrence)& usage) {
+  const std::string id = text_of(usage->Id());
+  return id.empty() ? "#" + std::to_string(model->IdentLabel(usage)) : id;
+}
+
 void read_step(const std::string& path, Source& source) {
   STEPControl_Controller::Init();
   STEPControl_Reader reader;
@@ -179,6 +189,8 @@ void read_step(const std::string& path, Source& source) {
       if (entity->IsKind(STANDARD_TYPE(StepShape_FaceSurface))) source.dropped.push_back(lossy(step_id(model, entity)));
       continue;
     }
+    auto usage = Handle(StepRepr_NextAssemblyUsageOccurrence)::DownCast(entity);
+    if (!usage.IsNull()) source.instances.push_back({shape, instance_name(model, usage)});
     if (!item.IsNull()) remember(source.origins, shape, {step_id(model, entity), text_of(item->Name()), 0});
   }
 }
@@ -246,7 +258,7 @@ std::unique_ptr<Import> read_file(rust::Str name, Format format, double scale) {
     else read_brep(path, source);
     if (source.shape.IsNull()) throw std::runtime_error("no shape came out of it");
     const Shape read(source.shape);
-    rust::Vec<Label> labels = labels_of(read, source.origins);
+    rust::Vec<Label> labels = labels_of(read, source.origins, paths_of(source.shape, source.instances));
     for (const auto& [shape, reference, title] : source.groups) add_group(labels, read, shape, reference, title);
     auto scaled = std::make_unique<Shape>(scaled_by(source.shape, scale / source.millimetres));
     if (scaled->face_count() != read.face_count() || scaled->edge_count() != read.edge_count())
