@@ -168,6 +168,7 @@ pub(crate) fn model(path: &Path, shape: &sys::Shape, description: Description) -
         vertices,
         groups: Vec::new(),
         dropped: Vec::new(),
+        warnings: Vec::new(),
         bounds,
         geometry: Arc::new(geometry),
     };
@@ -237,6 +238,7 @@ fn describe(model: &mut Model, description: Description) {
         group.faces.dedup();
     }
     model.dropped = description.dropped;
+    model.warnings = description.warnings;
 }
 
 /// Edits the entity with this index, if there is one.

@@ -166,6 +166,7 @@ pub struct Model {
     pub(crate) vertices: Vec<Vertex>,
     pub(crate) groups: Vec<NamedGroup>,
     pub(crate) dropped: Vec<String>,
+    pub(crate) warnings: Vec<String>,
     pub(crate) bounds: Aabb,
     pub(crate) geometry: Arc<Geometry>,
 }
@@ -219,6 +220,11 @@ impl Model {
     /// Entities of the file that came to no shape, by reference, with a reason where OCCT gives one.
     pub fn dropped(&self) -> &[String] {
         &self.dropped
+    }
+
+    /// What OCCT's checks say of entities of the file, by reference; the model may be right nevertheless.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
     }
 
     /// Close box of all entities, see [`Face::bounds`].

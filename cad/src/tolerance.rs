@@ -37,6 +37,12 @@ pub const LEAF_DEPTH: u32 = 8;
 /// Levels of cutting of leaves that a trim crosses, when a model is built.
 pub const TRIM_DEPTH: u32 = 4;
 
+/// An edge shorter than this, or a face whose box is, is called tiny. Fraction of the diagonal.
+pub const TINY: f64 = 1e-6;
+
+/// A pcurve that lies farther from its edge than this many tolerances of the edge is called inconsistent.
+pub const TRIM_GAP: f64 = 2.0;
+
 /// Sampled derivative bounds of a leaf are widened by this factor.
 pub const BOUND_SAFETY: f64 = 1.5;
 

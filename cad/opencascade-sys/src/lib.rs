@@ -158,6 +158,8 @@ mod ffi {
         fn millimetres_per_unit(self: &Import) -> f64;
         fn labels(self: &Import) -> Vec<Label>;
         fn dropped(self: &Import) -> Vec<String>;
+        /// What OCCT's checks say of entities; written to standard error as well, before OCCT goes on to use them.
+        fn warnings(self: &Import) -> Vec<String>;
 
         /// OCCT's own searches on a face, for tests and benchmarks: `found` is u, v, distance.
         fn oracle(shape: &Shape, face: usize) -> Result<UniquePtr<Oracle>>;
