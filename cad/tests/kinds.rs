@@ -84,12 +84,12 @@ fn all_kinds_against_occt_and_samples() {
             }
             for x in around(&model, face.id, 25, &mut random) {
                 let foot = group.closest(x, None);
-                let theirs = oracle.extrema(x.x, x.y, x.z).unwrap();
+                let theirs = oracle.extrema(x.x, x.y, x.z, &mut [0.0; 3]).unwrap();
                 let excess = foot.distance - theirs;
                 assert!(excess < 1e-9 * model.diagonal(), "{name} {} at {x}: {foot:?}, OCCT {theirs}", face.id);
                 assert!(!matches!(foot.end, End::Stalled { .. }), "{name} {}: {foot:?}", face.id);
                 // the foot lies on the trimmed face
-                let off = oracle.extrema(foot.point.x, foot.point.y, foot.point.z).unwrap();
+                let off = oracle.extrema(foot.point.x, foot.point.y, foot.point.z, &mut [0.0; 3]).unwrap();
                 assert!(off < 1e-6, "{name} {}: the foot is {off} off the face", face.id);
             }
         }

@@ -76,25 +76,28 @@ impl<'a> Judge<'a> {
         Some(point)
     }
 
-    /// Whether a point lies on the trimmed face.
+    /// Whether a point lies on the trimmed face. OCCT 7.6 answers wrongly for some faces of IGES files: what stands clearly out of the
+    /// box of the face's edges and samples is none of its points, whatever it says.
     fn holds(&self, p: DVec3) -> bool {
-        self.oracle.extrema(p.x, p.y, p.z).is_ok_and(|off| off <= WRONG * self.model.diagonal())
+        let bounds = self.model.faces()[self.face.index()].bounds;
+        bounds.grown(0.01 * bounds.diagonal()).distance_squared(p) == 0.0
+            && self.oracle.extrema(p.x, p.y, p.z, &mut [0.0; 3]).is_ok_and(|off| off <= WRONG * self.model.diagonal())
     }
 
-    /// Points of the four methods, `None` where one finds none or one outside the trim that would be too near.
+    /// Distances that the four methods find; `None` without an answer, or for one off the trimmed face that would be too near.
     fn candidates(&mut self, x: DVec3, ours: &Foot) -> [Option<f64>; 4] {
-        let mut at = [0.0; 3];
+        let (mut at, mut nearest) = ([0.0; 3], [0.0; 3]);
         let id: EntityId = self.face.into();
         let point = |p: [f64; 3]| Some(self.model.evaluate(id, [p[0], p[1]])?.point());
         let project = self.oracle.pin_mut().project(x.x, x.y, x.z, &mut at).unwrap_or(false).then_some(at);
         let analyse = self.oracle.pin_mut().analyse(x.x, x.y, x.z, &mut at).is_ok().then_some(at);
-        let points = [project.and_then(point), analyse.and_then(point), self.dense(x)];
+        let extrema = self.oracle.extrema(x.x, x.y, x.z, &mut nearest).is_ok().then_some(DVec3::from_array(nearest));
+        let points = [project.and_then(point), analyse.and_then(point), extrema, self.dense(x)];
         let limit = ours.distance - WRONG * self.model.diagonal();
-        let [a, b, c] = points.map(|p| {
+        points.map(|p| {
             let p = p.filter(|p| p.is_finite())?;
             (p.distance(x) >= limit || self.holds(p)).then(|| p.distance(x))
-        });
-        [a, b, self.oracle.extrema(x.x, x.y, x.z).ok(), c]
+        })
     }
 }
 

@@ -34,11 +34,13 @@ void Oracle::analyse(double x, double y, double z, std::array<double, 3>& found)
   });
 }
 
-double Oracle::extrema(double x, double y, double z) const {
+double Oracle::extrema(double x, double y, double z, std::array<double, 3>& found) const {
   return guard("BRepExtrema_DistShapeShape", [&] {
     const TopoDS_Vertex vertex = BRepBuilderAPI_MakeVertex(gp_Pnt(x, y, z));
     BRepExtrema_DistShapeShape extrema(vertex, face_);
     if (!extrema.IsDone() || extrema.NbSolution() == 0) throw std::runtime_error("no solution");
+    const gp_Pnt point = extrema.PointOnShape2(1);
+    found = {point.X(), point.Y(), point.Z()};
     return extrema.Value();
   });
 }

@@ -15,8 +15,8 @@ public:
   bool project(double x, double y, double z, std::array<double, 3>& found);
   // ShapeAnalysis_Surface: u, v, distance on the whole surface, trims ignored.
   void analyse(double x, double y, double z, std::array<double, 3>& found);
-  // BRepExtrema_DistShapeShape to the trimmed face: the distance.
-  double extrema(double x, double y, double z) const;
+  // BRepExtrema_DistShapeShape to the trimmed face: the distance; writes the point.
+  double extrema(double x, double y, double z, std::array<double, 3>& found) const;
 
 private:
   TopoDS_Face face_;

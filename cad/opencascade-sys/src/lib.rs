@@ -161,11 +161,11 @@ mod ffi {
         /// What OCCT's checks say of entities; written to standard error as well, before OCCT goes on to use them.
         fn warnings(self: &Import) -> Vec<String>;
 
-        /// OCCT's own searches on a face, for tests and benchmarks: `found` is u, v, distance.
+        /// OCCT's own searches on a face, for tests and benchmarks: `found` is u, v, distance; the point of `extrema`.
         fn oracle(shape: &Shape, face: usize) -> Result<UniquePtr<Oracle>>;
         fn project(self: Pin<&mut Oracle>, x: f64, y: f64, z: f64, found: &mut [f64; 3]) -> Result<bool>;
         fn analyse(self: Pin<&mut Oracle>, x: f64, y: f64, z: f64, found: &mut [f64; 3]) -> Result<()>;
-        fn extrema(self: &Oracle, x: f64, y: f64, z: f64) -> Result<f64>;
+        fn extrema(self: &Oracle, x: f64, y: f64, z: f64, found: &mut [f64; 3]) -> Result<f64>;
     }
 }
 
