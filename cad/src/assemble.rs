@@ -13,7 +13,7 @@ use opencascade_sys as sys;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 fn kind_of(kind: sys::Kind) -> Kind {
     match kind {
@@ -169,6 +169,7 @@ pub(crate) fn model(path: &Path, shape: &sys::Shape, description: Description) -
         groups: Vec::new(),
         dropped: Vec::new(),
         warnings: Vec::new(),
+        sewing: OnceLock::new(),
         bounds,
         geometry: Arc::new(geometry),
     };

@@ -20,8 +20,10 @@ pub struct Health {
     pub edges: BTreeMap<Kind, usize>,
     /// Number of vertices.
     pub vertices: usize,
-    /// Edges that bound one face only, and on one side: open rims, and seams between faces that are not sewn.
+    /// Edges that bound one face only, on one side, and match no other: open rims.
     pub open_edges: Vec<EdgeId>,
+    /// Sets of edges that are one within tolerance, between faces that are not sewn, see [`Model::sewing`].
+    pub doubled_edges: Vec<Vec<EdgeId>>,
     /// Edges that bound no face.
     pub free_edges: Vec<EdgeId>,
     /// Edges shorter than [`TINY`](crate::tolerance::TINY).
@@ -76,7 +78,8 @@ impl Model {
             faces: BTreeMap::new(),
             edges: BTreeMap::new(),
             vertices: self.vertices().len(),
-            open_edges: self.edges_where(|edge| edge.faces.len() == 1 && !edge.seam && !edge.degenerate),
+            open_edges: self.sewing().open.clone(),
+            doubled_edges: self.sewing().merged.clone(),
             free_edges: self.edges_where(|edge| edge.faces.is_empty()),
             tiny_edges: self.edges_where(|edge| !edge.degenerate && edge.bounds.diagonal() < TINY * self.diagonal()),
             tiny_faces: Vec::new(),

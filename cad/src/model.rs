@@ -3,10 +3,11 @@
 use crate::boxes::Aabb;
 use crate::ids::{EdgeId, EntityId, FaceId, VertexId};
 use crate::leaf::{EdgeGeometry, FaceGeometry};
+use crate::sewing::Sewing;
 use glam::DVec3;
 use std::fmt;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// What a face or an edge is, as the file says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -167,6 +168,7 @@ pub struct Model {
     pub(crate) groups: Vec<NamedGroup>,
     pub(crate) dropped: Vec<String>,
     pub(crate) warnings: Vec<String>,
+    pub(crate) sewing: OnceLock<Sewing>,
     pub(crate) bounds: Aabb,
     pub(crate) geometry: Arc<Geometry>,
 }

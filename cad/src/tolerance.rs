@@ -37,6 +37,9 @@ pub const LEAF_DEPTH: u32 = 8;
 /// Levels of cutting of leaves that a trim crosses, when a model is built.
 pub const TRIM_DEPTH: u32 = 4;
 
+/// Two open edges closer than this (or the tolerances of the file) are one. Fraction of the diagonal.
+pub const SEWING: f64 = 1e-7;
+
 /// An edge shorter than this, or a face whose box is, is called tiny. Fraction of the diagonal.
 pub const TINY: f64 = 1e-6;
 

@@ -20,7 +20,10 @@ fn good_models_are_healthy() {
 #[test]
 fn open_and_free_edges_are_told() {
     let unsewn = shape("unsewn.igs").health();
-    assert!(unsewn.open_edges.len() > 20 && unsewn.free_edges.is_empty(), "{unsewn:?}");
+    assert!(
+        unsewn.doubled_edges.len() > 10 && unsewn.open_edges.is_empty() && unsewn.free_edges.is_empty(),
+        "{unsewn:?}"
+    );
     let curves = shape("curves.step").health();
     assert_eq!((curves.free_edges.len(), curves.open_edges.len()), (3, 0));
     assert_eq!(curves.edges.get(&Kind::Circle), Some(&1));
@@ -62,4 +65,30 @@ fn a_crash_names_the_suspects() {
         Err(error) => assert!(error.to_string().contains("dangling.step"), "{error}"),
         Ok(model) => assert!(!model.warnings().is_empty(), "nothing was said"),
     }
+}
+
+/// The same plate sewn (BREP) and in surface mode (IGES): as many edges between two faces, and at the same places.
+#[test]
+fn edges_between_unsewn_faces_resolve() {
+    let (sewn, unsewn) = (shape("plate.brep"), shape("unsewn.igs"));
+    assert_eq!(sewn.faces().len(), unsewn.faces().len());
+    let real = sewn.edges().iter().filter(|edge| edge.faces.len() == 2 || edge.seam);
+    assert_eq!(unsewn.sewing().merged.len(), real.count());
+    let mut pairs = 0;
+    for a in 1..=unsewn.faces().len() {
+        for b in a..=unsewn.faces().len() {
+            let Ok(edges) = unsewn.resolve(&format!("faces:{a}|{b}")) else { continue };
+            pairs += edges.len();
+            for id in edges {
+                let cad::EntityId::Edge(id) = id else { panic!("{id}") };
+                assert_eq!(unsewn.sewing().same_as(id).len(), 2);
+                let group = cad::Group::of_edges(&unsewn, &[id]).unwrap();
+                let twin = unsewn.edge(unsewn.sewing().same_as(id)[1]).unwrap();
+                let middle =
+                    group.evaluate(twin.id.into(), [0.5 * (twin.parameters[0] + twin.parameters[1]), 0.0]).unwrap();
+                assert!(group.closest(middle.point(), None).distance < 1e-6);
+            }
+        }
+    }
+    assert_eq!(pairs, unsewn.sewing().merged.len());
 }
