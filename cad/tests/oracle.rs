@@ -76,12 +76,13 @@ impl<'a> Judge<'a> {
         Some(point)
     }
 
-    /// Whether a point lies on the trimmed face. OCCT 7.6 answers wrongly for some faces of IGES files: what stands clearly out of the
-    /// box of the face's edges and samples is none of its points, whatever it says.
-    fn holds(&self, p: DVec3) -> bool {
+    /// How far a point is off the trimmed face, `None` where by more than rounding. OCCT 7.6 answers wrongly for some faces of IGES files:
+    /// what stands clearly out of the box of the face's edges and samples is none of its points, whatever it says.
+    fn off(&self, p: DVec3) -> Option<f64> {
         let bounds = self.model.faces()[self.face.index()].bounds;
-        bounds.grown(0.01 * bounds.diagonal()).distance_squared(p) == 0.0
-            && self.oracle.extrema(p.x, p.y, p.z, &mut [0.0; 3]).is_ok_and(|off| off <= WRONG * self.model.diagonal())
+        let inside = bounds.grown(0.001 * bounds.diagonal()).distance_squared(p) == 0.0;
+        let off = self.oracle.extrema(p.x, p.y, p.z, &mut [0.0; 3]).ok()?;
+        (inside && off <= WRONG * self.model.diagonal()).then_some(off)
     }
 
     /// Distances that the four methods find; `None` without an answer, or for one off the trimmed face that would be too near.
@@ -96,7 +97,8 @@ impl<'a> Judge<'a> {
         let limit = ours.distance - WRONG * self.model.diagonal();
         points.map(|p| {
             let p = p.filter(|p| p.is_finite())?;
-            (p.distance(x) >= limit || self.holds(p)).then(|| p.distance(x))
+            let distance = p.distance(x);
+            if distance >= limit { Some(distance) } else { self.off(p).map(|off| distance + off) }
         })
     }
 }
