@@ -75,7 +75,7 @@ pub fn perturb(
     let in_plane = |n: usize| n >= linear && planar(hosts[n]);
     let field = Field::new(elevated, &wall, &displacement, &seeds);
     let mut carried = carry(&field, elevated, &displacement, in_plane);
-    for (n, d) in carried.iter_mut().enumerate() {
+    for (n, d) in carried.iter_mut().enumerate().skip(linear) {
         if let Some(plane) = association.plane_of(hosts[n]) {
             *d = plane.closest(elevated.mesh.points[n] + *d) - elevated.mesh.points[n];
         }
