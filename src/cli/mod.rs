@@ -25,16 +25,19 @@ const NOT_CERTIFIED: u8 = 4;
 /// Ended before it was done; certified.
 const STOPPED: u8 = 5;
 
+// Narrow, as clap breaks longer lines on an 80-column terminal, where they can no longer be pasted.
 const EXAMPLES: &str = "\
 Examples:
-  sagitta curve fixtures/weeble/weeble.msh --cad fixtures/weeble/weeble.step --order 3 -o weeble_p3.msh
   sagitta curve fixtures/weeble/weeble.msh --cad fixtures/weeble/weeble.step \\
-      --linkage fixtures/weeble/weeble.meshlink.xml --order 2 -o weeble_p2.vtu --report weeble_p2.json
+      --order 3 -o weeble_p3.msh
+  sagitta curve fixtures/weeble/weeble.msh --cad fixtures/weeble/weeble.step \\
+      --linkage fixtures/weeble/weeble.meshlink.xml --order 2 \\
+      -o weeble_p2.vtu --report weeble_p2.json
   sagitta check weeble_p3.msh --linear fixtures/weeble/weeble.msh
   sagitta info fixtures/weeble/weeble.step
 
-Exit codes: 0 done and certified, 2 could not run, 3 certified with some faces not on the CAD, 4 not certified,
-5 stopped early but certified.";
+Exit codes: 0 done and certified, 2 could not run, 3 certified with some faces
+not on the CAD, 4 not certified, 5 stopped early but certified.";
 
 /// Curves linear viscous meshes onto their CAD: P1 in, P2, P3 or P4 out, every element certified valid.
 #[derive(Parser)]
@@ -47,10 +50,13 @@ struct Program {
 #[derive(Subcommand)]
 enum Command {
     /// Curve a linear mesh onto its CAD
+    #[command(after_help = EXAMPLES)]
     Curve(Box<curve::Options>),
     /// Certify any mesh of order 1 to 4: is every element's Jacobian positive everywhere?
+    #[command(after_help = EXAMPLES)]
     Check(check::Options),
     /// Tell what a CAD, mesh or linkage file holds
+    #[command(after_help = EXAMPLES)]
     Info(info::Options),
 }
 

@@ -76,7 +76,7 @@ pub fn perturb(
     let field = Field::new(elevated, &wall, &displacement, &seeds, &[]);
     let reach = field.reach_of_roots();
     let mut carried = carry(&field, elevated, &displacement, in_plane);
-    for (n, d) in carried.iter_mut().enumerate() {
+    for (n, d) in carried.iter_mut().enumerate().skip(linear) {
         if let Some(plane) = association.plane_of(hosts[n]) {
             *d = plane.closest(elevated.mesh.points[n] + *d) - elevated.mesh.points[n];
         }

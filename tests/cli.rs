@@ -1,0 +1,236 @@
+//! The program as it is used: help, examples, what it says and writes, and that others can read it.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[macro_use]
+mod common;
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use common::{fixture, json, names_in, number, python, root, sagitta, script};
+use sagitta::formats;
+use serde_json::Value;
+
+#[test]
+fn help_of_every_command_has_the_examples() {
+    for command in [&["--help"][..], &["curve", "--help"], &["check", "--help"], &["info", "--help"]] {
+        let help = sagitta(command).expect(0);
+        assert_eq!(help.stderr, "");
+        assert!(examples(&help.stdout).len() >= 4, "{command:?}: {}", help.stdout);
+        assert!(help.stdout.contains("Exit codes:"), "{command:?}: {}", help.stdout);
+    }
+    let version = sagitta(["--version"]).expect(0);
+    assert_eq!(version.stdout.trim(), format!("sagitta {}", env!("CARGO_PKG_VERSION")));
+    for wrong in [&[][..], &["nonsense"], &["curve"], &["check"], &["info"]] {
+        let told = sagitta(wrong).expect(2);
+        assert!(told.stdout.is_empty() && told.stderr.contains("Usage: sagitta"), "{wrong:?}: {}", told.stderr);
+    }
+}
+
+/// Shell commands that call the program: lines that begin with its name, with the lines that they go on in.
+fn examples(text: &str) -> Vec<String> {
+    let mut found: Vec<String> = Vec::new();
+    let mut open = false;
+    for line in text.lines().map(str::trim) {
+        let program = ["sagitta ", "target/release/sagitta ", "./target/release/sagitta "];
+        let begins = program.iter().find_map(|name| line.strip_prefix(name));
+        let part = line.strip_suffix('\\').unwrap_or(line);
+        match begins {
+            Some(_) if !open => found.push(part.split_once(' ').unwrap().1.to_owned()),
+            _ if open => found.last_mut().unwrap().push_str(&format!(" {part}")),
+            _ => continue,
+        }
+        open = line.ends_with('\\');
+    }
+    found
+}
+
+/// Runs commands one after another in the repository; files that they name and that do not exist lie in `dir`.
+fn run(commands: &[String], dir: &Path) {
+    for command in commands {
+        let command = command.split('#').next().unwrap();
+        let place = |word: &str| -> OsString {
+            let made = [".msh", ".vtu", ".json"].iter().any(|end| word.ends_with(end)) && !root().join(word).exists();
+            if made { dir.join(Path::new(word).file_name().unwrap()).into() } else { word.into() }
+        };
+        let arguments: Vec<OsString> = command.split_whitespace().map(place).collect();
+        let outcome = sagitta(&arguments);
+        assert_eq!(outcome.code, Some(0), "sagitta {command}\n{}\n{}", outcome.stdout, outcome.stderr);
+        for option in ["-o", "--report"] {
+            let file = arguments.iter().position(|word| word == option).map(|at| PathBuf::from(&arguments[at + 1]));
+            assert!(file.is_none_or(|file| file.starts_with(dir) && file.exists()), "{option} of {command}");
+        }
+    }
+}
+
+#[test]
+fn examples_of_the_help_run() {
+    let help = sagitta(["--help"]).expect(0).stdout;
+    let commands = examples(&help);
+    let starts = commands.iter().map(|command| command.split(' ').next().unwrap()).collect::<Vec<_>>();
+    assert_eq!(starts, ["curve", "curve", "check", "info"], "{help}");
+    run(&commands, tempfile::tempdir().unwrap().path());
+}
+
+#[test]
+fn examples_of_the_readme_run() {
+    let Ok(readme) = std::fs::read_to_string(root().join("README.md")) else { return };
+    let blocks = readme.split("```sh\n").skip(1).map(|block| block.split("```").next().unwrap());
+    let commands = examples(&blocks.collect::<String>());
+    assert!(!commands.is_empty(), "README.md shows no command of the program in its ```sh blocks");
+    run(&commands, tempfile::tempdir().unwrap().path());
+}
+
+#[test]
+fn what_calls_the_program_is_found_in_text() {
+    let text = "$ no\nsagitta info a \\\n   b\nmake demo\n  target/release/sagitta check c  \nsagittas\n";
+    assert_eq!(examples(text), ["info a  b", "check c"]);
+}
+
+#[test]
+fn info_tells_what_each_kind_of_file_holds() {
+    let told = |file: PathBuf| sagitta(args!["info", file]).expect(0).stdout;
+    for (text, words) in [
+        (
+            told(fixture("weeble", "msh")),
+            &["order P1", "4935 nodes", "28242 tet", "surface 2: 151 faces wall", "box"][..],
+        ),
+        (told(fixture("weeble_hybrid", "msh")), &["1292 prism", "1957 hex", "103 pyramid", "8285 tet"]),
+        (told(root().join("fixtures/samples/hexpyrtet_p3_msh41a.msh")), &["order P3", "1040 nodes", "4 pyramid"]),
+        (told(fixture("cylinder_bl", "step")), &["STEP", "millimetre", "6 faces", "4 plane, 2 cylinder", "face:6"]),
+        (told(fixture("cylinder_bl", "igs")), &["IGES", "0.001 m", "6 faces", "face:6"]),
+        (
+            told(fixture("cylinder_bl", "meshlink.xml")),
+            &[
+                "MeshLink",
+                "\"cylinder_bl.step\": 26 references",
+                "\"cylinder_bl.msh\"",
+                "\"wall/face-4\": 24 faces",
+                "12 strings",
+            ],
+        ),
+    ] {
+        for word in words {
+            assert!(text.contains(word), "{word:?} is not in {text}");
+        }
+    }
+    for (name, content) in [("none", None), ("noise", Some("noise"))] {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join(name);
+        content.into_iter().for_each(|text| std::fs::write(&path, text).unwrap());
+        let outcome = sagitta(args!["info", path]).expect(2);
+        assert!(outcome.stderr.lines().count() == 1 && outcome.stderr.contains(name), "{}", outcome.stderr);
+    }
+}
+
+/// `weeble_hybrid`, which has all four cells, at P2.
+fn curve(output: &Path, more: &[OsString]) -> String {
+    let (mesh, cad) = (fixture("weeble_hybrid", "msh"), fixture("weeble_hybrid", "step"));
+    let arguments = args!["curve", mesh, "--cad", cad, "--order", "2", "-o", output];
+    sagitta(arguments.into_iter().chain(more.iter().cloned())).expect(0).stdout
+}
+
+#[test]
+fn other_programs_read_every_kind_of_output() {
+    let dir = tempfile::tempdir().unwrap();
+    let kinds: [(&str, &[&str]); 6] = [
+        ("binary41.msh", &[]),
+        ("ascii41.msh", &["--ascii"]),
+        ("binary22.msh", &["--msh-version", "2.2"]),
+        ("ascii22.msh", &["--msh-version", "2.2", "--ascii"]),
+        ("all.vtu", &[]),
+        ("volume.vtu", &["--volume-only"]),
+    ];
+    let files = kinds.map(|(name, options)| {
+        let path = dir.path().join(name);
+        curve(&path, &options.iter().map(OsString::from).collect::<Vec<_>>());
+        path
+    });
+    let head = |file: &PathBuf| String::from_utf8_lossy(&std::fs::read(file).unwrap()[..40]).into_owned();
+    for (file, start) in files.iter().zip(["4.1 1 8", "4.1 0 8", "2.2 1 8", "2.2 0 8"]) {
+        assert!(head(file).starts_with(&format!("$MeshFormat\n{start}")), "{}", head(file));
+    }
+    let first = formats::read(&files[0]).unwrap();
+    for file in &files[1..4] {
+        let other = formats::read(file).unwrap();
+        assert_eq!((&other.points, &other.node_tags), (&first.points, &first.node_tags), "{}", file.display());
+    }
+    let cells = [0, 1, 2, 3].map(|dimension| first.element_count(dimension));
+    assert_eq!(cells[3], 1292 + 1957 + 103 + 8285);
+
+    let Some(python) = python("the output is NOT read by Gmsh, meshio and VTK") else { return };
+    let found = script(&python, "reread.py", &files);
+    let of = |file: &PathBuf, reader: &str| found[file.to_str().unwrap()][reader].clone();
+    let sum = |elements: &Value| -> u64 {
+        let counts = elements.as_object().unwrap_or_else(|| panic!("{found:#}"));
+        counts.values().map(|count| count.as_u64().unwrap()).sum()
+    };
+    let reference = of(&files[0], "gmsh");
+    assert!(number(&reference, "/smallest_determinant") > 0.0, "{reference}");
+    for file in &files[..4] {
+        let gmsh = of(file, "gmsh");
+        assert_eq!(sum(&gmsh["elements"]) as usize, cells.iter().sum::<usize>(), "{}: {gmsh}", file.display());
+        assert_eq!(gmsh["nodes"], first.points.len(), "{}", file.display());
+        assert!((number(&gmsh, "/volume") - number(&reference, "/volume")).abs() < 1e-9, "{gmsh}");
+    }
+    for (file, dimensions) in [(&files[4], 0..=3), (&files[5], 3..=3)] {
+        let vtk = of(file, "pyvista");
+        assert_eq!(sum(&vtk["elements"]) as usize, cells[dimensions].iter().sum::<usize>(), "{vtk}");
+        assert_eq!(vtk["nodes"], first.points.len(), "{vtk}");
+        // VTK's volumes of curved cells are those of their linear pieces.
+        assert!((number(&vtk, "/volume") / number(&reference, "/volume") - 1.0).abs() < 0.02, "{vtk} {reference}");
+        for (array, least) in [("certified_min_J_over_Jc", 0.4), ("C_WCN", 0.7)] {
+            let smallest = number(&vtk["arrays"], &format!("/{array}/0"));
+            assert!(smallest >= least && smallest <= 1.0, "{array}: {smallest}");
+        }
+    }
+    let meshio = of(&files[5], "meshio");
+    assert_eq!(meshio["nodes"], first.points.len(), "--volume-only is for readers like meshio: {meshio}");
+}
+
+#[test]
+fn report_and_check_tell_the_same() {
+    let dir = tempfile::tempdir().unwrap();
+    let [output, report, checked] = ["out.msh", "report.json", "check.json"].map(|name| dir.path().join(name));
+    let text = curve(&output, &args!["--report", report]);
+    assert_eq!(names_in(dir.path()), ["out.msh", "report.json"]);
+    let linear = fixture("weeble_hybrid", "msh");
+    sagitta(args!["check", output, "--linear", linear, "--report", checked]).expect(0);
+    let [report, checked] = [report, checked].map(|path| json(&path));
+    assert_eq!(report["schema"], "sagitta-report-1");
+    assert_eq!(report["schema"], sagitta::report::SCHEMA);
+    assert_eq!(checked["schema"], "sagitta-check-1");
+    for key in ["order", "certified", "certificate"] {
+        assert_eq!(report[key], checked[key], "{key}");
+    }
+    let counts = |document: &Value| {
+        let cells = document["cells"].as_array().unwrap().iter();
+        let keys = ["cell", "count", "valid", "invalid", "undecided"];
+        cells.map(|cell| keys.map(|key| cell[key].clone())).collect::<Vec<_>>()
+    };
+    assert_eq!(counts(&report), counts(&checked));
+    assert_eq!(counts(&report).len(), 4);
+    let steps: Vec<&str> = report["seconds"].as_array().unwrap().iter().map(|s| s["step"].as_str().unwrap()).collect();
+    assert_eq!(steps, ["read", "associate", "elevate", "project", "perturb", "smooth", "certify"]);
+    assert!(number(&report, "/peak_memory") > 1e6 && number(&report, "/threads") >= 1.0);
+    // The table for people has the same figures.
+    for cell in report["cells"].as_array().unwrap() {
+        for key in ["/c_wcn_min", "/c_jac_min", "/certified_min"] {
+            let figure = format!("{:.4}", number(cell, key));
+            assert!(text.contains(&figure), "{key} {figure} is not in:\n{text}");
+        }
+    }
+    assert!(text.contains(&format!("written: {}", output.display())), "{text}");
+}
+
+#[test]
+fn progress_goes_to_stderr_in_plain_lines() {
+    let dir = tempfile::tempdir().unwrap();
+    let (mesh, cad, output) = (fixture("cylinder_bl", "msh"), fixture("cylinder_bl", "step"), dir.path().join("o.msh"));
+    let outcome = sagitta(args!["curve", mesh, "--cad", cad, "--order", "2", "-o", output]).expect(0);
+    for (n, step) in ["read", "associate", "elevate", "project", "perturb", "smooth", "certify"].iter().enumerate() {
+        assert!(outcome.stderr.contains(&format!("step {} of 7: {step}", n + 1)), "{}", outcome.stderr);
+    }
+    assert!(!outcome.stderr.contains('\x1b') && !outcome.stderr.contains('\r'), "{}", outcome.stderr);
+    assert!(!outcome.stdout.contains("step 1 of"), "{}", outcome.stdout);
+}
