@@ -18,7 +18,7 @@ SAGITTA := $(TARGET)/release/sagitta
 
 # The steps of a target run in their order, also under -j.
 .NOTPARALLEL:
-.PHONY: help setup setup-build build demo venv test lint unit bench doc
+.PHONY: help setup setup-build build demo venv test lint unit bench oracle table doc
 
 help: ## this list
 	@echo "sagitta curves linear viscous CFD meshes onto their CAD. Targets:"
@@ -66,7 +66,14 @@ unit: setup-build venv ## tests and doctests, by cargo-nextest where it is insta
 	SAGITTA_PYTHON="$(SAGITTA_PYTHON)" cargo test --workspace --doc --profile $(TEST_PROFILE)
 
 bench: build ## benchmarks; minutes, not a test
-	cargo bench --workspace
+	cargo bench --bench curve
+	cargo bench -p sagitta-cad --bench projection
+
+oracle: setup-build ## closest points beside OCCT's own searches and dense grids; SAGITTA_CAD=DIR adds foreign CAD; minutes
+	SAGITTA_ORACLE_QUERIES=125 cargo test -p sagitta-cad --release --test oracle -- --ignored --nocapture
+
+table: build venv ## the README's table: the fixtures curved, and judged by other code; minutes
+	"$(SAGITTA_PYTHON)" tests/judge/table.py $(SAGITTA)
 
 doc: setup-build ## the documentation, in target/doc
 	cargo doc --workspace --no-deps

@@ -1,4 +1,42 @@
-//! sagitta curves linear viscous meshes onto their CAD.
+//! sagitta curves linear viscous meshes onto their CAD: P1 in, P2, P3 or P4 out, every element certified valid.
+//!
+//! The sagitta is the height of an arc over its chord: what a straight edge at a curved wall lacks. The program implements
+//! Karman, *Curving for Viscous Meshes* (27th International Meshing Roundtable), and departs from it where measurements said so.
+//!
+//! # The data's way
+//!
+//! ```text
+//!  CAD file ──┐                         ┌─ linkage file (MeshLink XML), or none
+//!             ▼                         ▼
+//!         cad::Model ── groups ──► associate ◄── linear mesh
+//!                                      │  every boundary point, edge, face → its CAD group
+//!                                      ▼
+//!                                   elevate      P1 → Pp, equispaced nodes, one copy kept unperturbed: the targets
+//!                                      ▼
+//!                                   project      new wall nodes → their CAD group
+//!                                      ▼
+//!                                   perturb      wall displacement carried into planes and volume
+//!                                      ▼
+//!                                   smooth       stages: shape, then shape + Jacobian; wall nodes slide on the CAD
+//!                                      ▼
+//!                                   certify      a proof of det J > 0 for every element; retreat where one fails
+//!                                      ▼
+//!                       curved mesh + report
+//! ```
+//!
+//! The order of the steps stands in [`pipeline`]; each step is a module named after it:
+//!
+//! 1. [`formats`] reads the linear mesh into a [`mesh::Mesh`]; [`cad::Model::read`] reads the CAD in a child process.
+//! 2. [`associate`] ties boundary faces, edges and points to groups of CAD entities, by a linkage file or by entity tags, and holds
+//!    the claims against the CAD.
+//! 3. [`elevate`] makes the new nodes at their straight places.
+//! 4. [`project`] spreads the boundary's new nodes and puts them on their groups.
+//! 5. [`perturb`] carries the wall's displacement into planar patches and into the volume.
+//! 6. [`smooth`] lowers an objective made of the paper's costs ([`quality`]), stage by stage, on the active part of the mesh.
+//! 7. [`certify`] proves every element valid, or [`retreat`] takes displacements back until it can.
+//! 8. [`report`] tells what came out; [`formats`] writes it.
+//!
+//! [`element`] is the one place that knows cells: their lattices, bases, sub-elements, sample tables and file orders.
 #![forbid(unsafe_code)]
 
 pub mod associate;

@@ -45,6 +45,25 @@ pub struct Job {
     pub smoothing: smooth::Settings,
 }
 
+impl Job {
+    /// A job with the default settings.
+    #[must_use]
+    pub fn new(mesh: PathBuf, cad: PathBuf, linkage: Option<PathBuf>, order: Order) -> Job {
+        Job {
+            mesh,
+            cad,
+            linkage,
+            order,
+            max_offset: 1e-3,
+            freeze_linear: false,
+            freeze_walls: false,
+            cad_scale: Some(1.0),
+            reading: ReadOptions::default(),
+            smoothing: smooth::Settings::default(),
+        }
+    }
+}
+
 /// Steps of the pipeline, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[allow(missing_docs)] // the names are those of the modules
@@ -167,8 +186,14 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
     clock.step(Step::Smooth);
     let straight = elevated.mesh.points.clone();
     let problem = Problem::new(&elevated.mesh, &straight);
-    let constraint =
-        CadConstraint::new(&association, &projected, elevated.linear_nodes, job.freeze_walls, job.freeze_linear);
+    let constraint = CadConstraint::new(
+        &association,
+        &straight,
+        &projected,
+        elevated.linear_nodes,
+        job.freeze_walls,
+        job.freeze_linear,
+    );
     let smoothed =
         smooth(&problem, &constraint, &job.smoothing, &mut places, |progress| clock.observer.progress(&progress));
     elevated.mesh.points = places;

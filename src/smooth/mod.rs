@@ -47,4 +47,19 @@ pub trait Constraint: Sync {
 
     /// The allowed place nearest to `wish`, for a node that stands at `from`.
     fn restrict(&self, node: NodeId, from: DVec3, wish: DVec3) -> DVec3;
+
+    /// What draws a node back to where it was put; nodes without an anchor follow their elements alone.
+    fn anchor(&self, _node: NodeId) -> Option<Anchor> {
+        None
+    }
+}
+
+/// A spring that holds a wall node near its place among its neighbours: the wall polynomial follows the CAD only as well
+/// as its nodes are spread. The objective grows by 1 where the node is `slack` away.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Anchor {
+    /// Where the node was put.
+    pub place: DVec3,
+    /// Distance that costs as much as one element at its worst shape.
+    pub slack: f64,
 }

@@ -3,9 +3,10 @@
 //! Elements are evaluated in parallel into slots of their own; a node's sum runs over its slots in rising order, so
 //! that the result does not depend on the number of threads.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
+use super::Anchor;
 use super::kernel::{Element, Kernel, NodeDerivative, Scratch, Weights};
 use super::patch::{Patch, Run};
 use crate::quality::Cut;
@@ -20,6 +21,8 @@ pub(super) struct Objective<'a> {
     /// How each element is cut, in the order of [`Patch::elements`].
     pub(super) cuts: Vec<Cut>,
     pub(super) weights: Weights,
+    /// Nodes of the patch that are drawn back, rising.
+    pub(super) anchors: Vec<(usize, Anchor)>,
 }
 
 /// Buffers of a task.
@@ -61,7 +64,7 @@ impl Objective<'_> {
                 }
             });
         }
-        values.iter().sum()
+        values.iter().sum::<f64>() + self.springs(x)
     }
 
     /// The objective and its derivatives by every node of the patch; `slots` is a buffer.
@@ -96,7 +99,19 @@ impl Objective<'_> {
             total
         };
         (0..self.patch.nodes.len()).into_par_iter().with_min_len(256).map(sum).collect_into_vec(nodes);
-        values.iter().sum()
+        for &(node, anchor) in &self.anchors {
+            let stiffness = 2.0 / (anchor.slack * anchor.slack);
+            nodes[node].gradient += (x[node] - anchor.place) * stiffness;
+            nodes[node].hessian += DMat3::from_diagonal(DVec3::splat(stiffness));
+        }
+        values.iter().sum::<f64>() + self.springs(x)
+    }
+
+    fn springs(&self, x: &[DVec3]) -> f64 {
+        let spring = |(node, anchor): &(usize, Anchor)| {
+            (x[*node] - anchor.place).length_squared() / (anchor.slack * anchor.slack)
+        };
+        self.anchors.iter().map(spring).sum()
     }
 
     fn gather<'s>(

@@ -234,7 +234,10 @@ impl Run<'_, '_> {
         let weights = Weights { shape, jacobian, density: Density { emphasis: EMPHASIS, delta } };
         let cuts = patch.elements.iter().map(|&e| costs[e].cut).collect();
         let own = patch.runs.iter().map(|run| kernels.of(run.cell)).collect();
-        let objective = Objective { patch, kernels: own, cuts, weights };
+        let anchored =
+            |i: usize| patch.movable[i].then(|| self.constraint.anchor(patch.nodes[i])).flatten().map(|a| (i, a));
+        let anchors = (0..patch.nodes.len()).filter_map(anchored).collect();
+        let objective = Objective { patch, kernels: own, cuts, weights, anchors };
         let progress = self.progress(number, stage, costs, patch);
         let left = ROUND.min(self.settings.max_sweeps - self.sweeps);
         let first = self.sweeps;

@@ -1,0 +1,54 @@
+//! Seconds a step for the weeble at P2, P3 and P4, beside the time of elevation alone in the same run.
+//!
+//! `cargo bench --bench curve`, from the repository's root; prints a table.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use sagitta::element::Order;
+use sagitta::pipeline::{self, Job, Observer, Step};
+use sagitta::smooth;
+
+struct Silent;
+
+impl Observer for Silent {
+    fn step(&mut self, _: Step) {}
+
+    fn progress(&mut self, _: &smooth::Progress) -> bool {
+        true
+    }
+}
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().collect();
+    if let [_, word, path] = arguments.as_slice()
+        && word == cad::READER_SUBCOMMAND
+    {
+        return cad::serve_reader(path.as_ref());
+    }
+    println!("| weeble | seconds | of elevation alone | sweeps | us a node and sweep | min J/Jc |");
+    println!("|---|---|---|---|---|---|");
+    for order in Order::all().skip(1) {
+        if let Err(error) = row(order) {
+            eprintln!("{error}");
+            return ExitCode::FAILURE;
+        }
+    }
+    ExitCode::SUCCESS
+}
+
+fn row(order: Order) -> Result<(), pipeline::PipelineError> {
+    let case = |ending: &str| PathBuf::from(format!("{}/fixtures/weeble/weeble.{ending}", env!("CARGO_MANIFEST_DIR")));
+    let job = Job::new(case("msh"), case("step"), Some(case("meshlink.xml")), order);
+    let curved = pipeline::curve(&job, &mut Silent)?;
+    let total: f64 = curved.seconds.iter().map(|(_, s)| s).sum();
+    let of = |step: Step| curved.seconds.iter().filter(|(s, _)| *s == step).map(|(_, t)| t).sum::<f64>();
+    let (nodes, sweeps) = (curved.mesh.points.len(), curved.smoothed.sweeps);
+    println!(
+        "| {order} | {total:.2} | {:.0} x | {sweeps} | {:.2} | {:.3} |",
+        total / of(Step::Elevate),
+        1e6 * of(Step::Smooth) / (nodes * sweeps.max(1)) as f64,
+        curved.certificate.relative.lower
+    );
+    Ok(())
+}
