@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 const INCLUDE_DIRS: [&str; 3] =
     ["/usr/include/opencascade", "/usr/local/include/opencascade", "/opt/include/opencascade"];
-const SHIM: [&str; 3] = ["geometry", "shape", "import"];
+const SHIM: [&str; 5] = ["geometry", "shape", "instances", "import", "oracle"];
 
 fn main() {
     println!("cargo:rerun-if-env-changed=OCCT_INCLUDE_DIR");

@@ -7,13 +7,13 @@ use crate::ids::{EdgeId, FaceId, VertexId};
 use crate::leaf::{EdgeGeometry, FaceGeometry, Side, edge_leaves, face_leaves};
 use crate::model::{Edge, Face, Geometry, Kind, Label, Model, NamedGroup, Vertex};
 use crate::payload::Description;
-use crate::trim::Trim;
+use crate::trim::{Trim, Wire};
 use glam::DVec3;
 use opencascade_sys as sys;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 fn kind_of(kind: sys::Kind) -> Kind {
     match kind {
@@ -50,7 +50,7 @@ struct OpenFace {
 fn open_face(shape: &sys::Shape, i: usize) -> Result<OpenFace, String> {
     let name = "face";
     let data = at(name, i, shape.face(i))?;
-    let rect = Rect { u: [data.u_min, data.u_max], v: [data.v_min, data.v_max] };
+    let mut rect = Rect { u: [data.u_min, data.u_max], v: [data.v_min, data.v_max] };
     let finite = [rect.u, rect.v].as_flattened().iter().all(|t| t.abs() < 1e50);
     if !finite {
         return Err(format!("face:{}: its parameters have no finite bounds", i + 1));
@@ -58,7 +58,12 @@ fn open_face(shape: &sys::Shape, i: usize) -> Result<OpenFace, String> {
     let handle = Arc::new(at(name, i, shape.surface(i))?);
     let kind = kind_of(at(name, i, handle.form())?.kind);
     let chart = at(name, i, Chart::new(Arc::clone(&handle), rect))?;
-    let (sides, trim) = at(name, i, sides_of(shape, i))?;
+    let (sides, wires) = at(name, i, sides_of(shape, i))?;
+    let (trim, outer) = Trim::new(wires, chart.periods());
+    if let Some(outer) = outer {
+        let within = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].min(b[1])];
+        rect = Rect { u: within(rect.u, outer.u), v: within(rect.v, outer.v) };
+    }
     let mut edges: Vec<EdgeId> = sides.iter().filter_map(|side| side.edge).map(EdgeId::new).collect();
     edges.sort_unstable();
     edges.dedup();
@@ -76,7 +81,7 @@ fn open_face(shape: &sys::Shape, i: usize) -> Result<OpenFace, String> {
     Ok(OpenFace { geometry, face })
 }
 
-fn sides_of(shape: &sys::Shape, face: usize) -> Result<(Vec<Side>, Trim), sys::Exception> {
+fn sides_of(shape: &sys::Shape, face: usize) -> Result<(Vec<Side>, Vec<Wire>), sys::Exception> {
     let loops = shape.loops(face)?;
     let mut sides = Vec::new();
     let mut spans = Vec::new();
@@ -87,13 +92,13 @@ fn sides_of(shape: &sys::Shape, face: usize) -> Result<(Vec<Side>, Trim), sys::E
         let edge = usize::try_from(coedge.edge).ok();
         sides.push(Side { edge, wire: coedge.wire, seam: coedge.seam, range: [coedge.first, coedge.last], pcurve });
     }
-    let mut trim = Trim::default();
+    let mut wires = Vec::new();
     for wire in sides.chunk_by(|a, b| a.wire == b.wire) {
         let rest = spans.split_off(wire.len());
-        trim.add_wire(spans.iter().map(|(spans, reversed)| (spans, *reversed)));
+        wires.push(Wire::new(spans.iter().map(|(spans, reversed)| (spans, *reversed))));
         spans = rest;
     }
-    Ok((sides, trim))
+    Ok((sides, wires))
 }
 
 fn open_edge(shape: &sys::Shape, i: usize) -> Result<(Edge, Option<EdgeGeometry>), String> {
@@ -163,6 +168,8 @@ pub(crate) fn model(path: &Path, shape: &sys::Shape, description: Description) -
         vertices,
         groups: Vec::new(),
         dropped: Vec::new(),
+        warnings: Vec::new(),
+        sewing: OnceLock::new(),
         bounds,
         geometry: Arc::new(geometry),
     };
@@ -232,6 +239,7 @@ fn describe(model: &mut Model, description: Description) {
         group.faces.dedup();
     }
     model.dropped = description.dropped;
+    model.warnings = description.warnings;
 }
 
 /// Edits the entity with this index, if there is one.

@@ -8,14 +8,15 @@ use glam::{DVec3, DVec4};
 /// OCCT's largest degree.
 pub(crate) const MAX_DEGREE: usize = 25;
 
-/// Values, first and second derivatives of the Bernstein polynomials of one degree at one `t` in 0..=1.
-pub(crate) struct Bernstein {
-    pub(crate) b: [[f64; MAX_DEGREE + 1]; 3],
+/// Values, first and second derivatives of the Bernstein polynomials of one degree below `N` at one `t` in 0..=1.
+pub(crate) struct Bernstein<const N: usize = { MAX_DEGREE + 1 }> {
+    pub(crate) b: [[f64; N]; 3],
 }
 
-impl Bernstein {
+impl<const N: usize> Bernstein<N> {
+    #[inline(always)] // degrees are constants where it matters
     pub(crate) fn at(degree: usize, t: f64) -> Self {
-        let mut b = [[0.0; MAX_DEGREE + 1]; 3];
+        let mut b = [[0.0; N]; 3];
         let s = 1.0 - t;
         b[0][0] = 1.0;
         let n = degree as f64;
@@ -38,8 +39,9 @@ impl Bernstein {
 }
 
 /// `n (B_{i-1} − B_i)` from the polynomials of degree `k`.
-fn first_difference(b: &[f64; MAX_DEGREE + 1], k: usize, scale: f64) -> [f64; MAX_DEGREE + 1] {
-    let mut d = [0.0; MAX_DEGREE + 1];
+#[inline(always)]
+fn first_difference<const N: usize>(b: &[f64; N], k: usize, scale: f64) -> [f64; N] {
+    let mut d = [0.0; N];
     for i in 0..=k {
         d[i] -= scale * b[i];
         d[i + 1] += scale * b[i];
@@ -47,14 +49,57 @@ fn first_difference(b: &[f64; MAX_DEGREE + 1], k: usize, scale: f64) -> [f64; MA
     d
 }
 
-fn second_difference(b: &[f64; MAX_DEGREE + 1], k: usize, scale: f64) -> [f64; MAX_DEGREE + 1] {
-    let mut d = [0.0; MAX_DEGREE + 1];
+#[inline(always)]
+fn second_difference<const N: usize>(b: &[f64; N], k: usize, scale: f64) -> [f64; N] {
+    let mut d = [0.0; N];
     for i in 0..=k {
         d[i] += scale * b[i];
         d[i + 1] -= 2.0 * scale * b[i];
         d[i + 2] += scale * b[i];
     }
     d
+}
+
+/// Homogeneous point and derivatives `[p, p_a, p_b, p_aa, p_ab, p_bb]` of a patch of degrees `N − 1`, `M − 1`, poles `b` fastest.
+#[inline(always)]
+fn blend<const N: usize, const M: usize>(patch: &[DVec4], [da, db]: [usize; 2], a: f64, b: f64) -> [DVec4; 6] {
+    let (ba, bb) = (Bernstein::<N>::at(da, a), Bernstein::<M>::at(db, b));
+    let mut h = [DVec4::ZERO; 6];
+    for i in 0..=da {
+        let row = &patch[i * (db + 1)..][..=db];
+        let mut r = [DVec4::ZERO; 3];
+        for j in 0..=db {
+            r[0] += bb.b[0][j] * row[j];
+            r[1] += bb.b[1][j] * row[j];
+            r[2] += bb.b[2][j] * row[j];
+        }
+        h[0] += ba.b[0][i] * r[0];
+        h[1] += ba.b[1][i] * r[0];
+        h[2] += ba.b[0][i] * r[1];
+        h[3] += ba.b[2][i] * r[0];
+        h[4] += ba.b[1][i] * r[1];
+        h[5] += ba.b[0][i] * r[2];
+    }
+    h
+}
+
+/// [`blend`] with the degrees as constants where they are usual.
+pub(crate) fn patch_d2(patch: &[DVec4], degree: [usize; 2], a: f64, b: f64) -> [DVec4; 6] {
+    const ANY: usize = MAX_DEGREE + 1;
+    match degree {
+        [1, 1] => blend::<2, 2>(patch, [1, 1], a, b),
+        [1, 3] => blend::<2, 4>(patch, [1, 3], a, b),
+        [3, 1] => blend::<4, 2>(patch, [3, 1], a, b),
+        [2, 2] => blend::<3, 3>(patch, [2, 2], a, b),
+        [2, 3] => blend::<3, 4>(patch, [2, 3], a, b),
+        [3, 2] => blend::<4, 3>(patch, [3, 2], a, b),
+        [3, 3] => blend::<4, 4>(patch, [3, 3], a, b),
+        [3, 5] => blend::<4, 6>(patch, [3, 5], a, b),
+        [5, 3] => blend::<6, 4>(patch, [5, 3], a, b),
+        [5, 5] => blend::<6, 6>(patch, [5, 5], a, b),
+        _ if degree[0].max(degree[1]) < 10 => blend::<10, 10>(patch, degree, a, b),
+        _ => blend::<ANY, ANY>(patch, degree, a, b),
+    }
 }
 
 /// The part of a span over `[a, b]` (in its 0..=1), in place. `stride` apart, `degree + 1` points from `start`.
@@ -85,6 +130,9 @@ pub(crate) fn project(p: DVec4) -> DVec3 {
 /// Position and derivatives in space from homogeneous ones: `[p, p_a, p_b, p_aa, p_ab, p_bb]` (quotient rule).
 pub(crate) fn quotient(h: [DVec4; 6]) -> [DVec3; 6] {
     let [p, a, b, aa, ab, bb] = h;
+    if p.w == 1.0 && [a, b, aa, ab, bb].iter().all(|d| d.w == 0.0) {
+        return h.map(DVec4::truncate);
+    }
     let w = p.w.recip();
     let s = p.truncate() * w;
     let sa = (a.truncate() - s * a.w) * w;

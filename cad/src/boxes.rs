@@ -146,9 +146,12 @@ impl BoxTree {
 
     /// Visits leaves, nearer branches first, whose box is at most `sqrt(bound)` away from `x`. The visitor gets the leaf's index and
     /// the present bound and returns the new bound (squared distance): what lies farther away is skipped from then on.
-    pub fn visit(&self, x: DVec3, mut bound: f64, mut visitor: impl FnMut(usize, f64) -> f64) {
+    ///
+    /// Returns a lower bound of the squared distance of everything skipped; infinite where nothing was.
+    pub fn visit(&self, x: DVec3, mut bound: f64, mut visitor: impl FnMut(usize, f64) -> f64) -> f64 {
+        let mut skipped = f64::INFINITY;
         if self.nodes.is_empty() {
-            return;
+            return skipped;
         }
         let mut stack = [(0_u32, 0.0_f64); STACK];
         stack[0].1 = self.nodes[0].bounds.distance_squared(x);
@@ -157,13 +160,17 @@ impl BoxTree {
             depth -= 1;
             let (index, distance) = stack[depth];
             if distance > bound {
+                skipped = skipped.min(distance);
                 continue;
             }
             let node = &self.nodes[index as usize];
             if node.count > 0 {
                 for at in node.first..node.first + node.count {
-                    if self.boxes[at as usize].distance_squared(x) <= bound {
+                    let distance = self.boxes[at as usize].distance_squared(x);
+                    if distance <= bound {
                         bound = visitor(self.order[at as usize] as usize, bound);
+                    } else {
+                        skipped = skipped.min(distance);
                     }
                 }
                 continue;
@@ -175,6 +182,7 @@ impl BoxTree {
             stack[depth + 1] = near;
             depth += 2;
         }
+        skipped
     }
 
     /// The nearest leaf to `x` not farther than `sqrt(bound)`. `distance_squared(leaf)` is the exact squared distance of a leaf, or `None` for

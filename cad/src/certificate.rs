@@ -10,10 +10,13 @@ use crate::curve::{Curve, Hull};
 use crate::tolerance::BOUND_SAFETY;
 use glam::DVec3;
 
-/// What [`Certificate::is_convex`] needs to know about a leaf.
+/// What [`Certificate::modulus`] needs to know about a leaf.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Certificate {
-    center: DVec3,
+    /// Point and derivatives at the centre; a curve fills 0, 1 and 3.
+    jet: Jet,
+    /// Columns of `T`, see [`scaling`].
+    scaling: [f64; 3],
     /// `S''` at the centre in scaled parameters: 11, 12, 22 (a curve uses the first alone).
     second: [DVec3; 3],
     dg: f64,
@@ -45,6 +48,61 @@ fn scaled(jet: &Jet, [t0, t1, t2]: [f64; 3]) -> Scaled {
         second: [t0 * t0 * aa, t0 * (t1 * aa + t2 * ab), t1 * t1 * aa + 2.0 * t1 * t2 * ab + t2 * t2 * bb],
     }
 }
+
+/// Smallest eigenvalue of `I + [[a, b], [b, c]]`.
+fn smallest([a, b, c]: [f64; 3]) -> f64 {
+    1.0 + 0.5 * ((a + c) - ((a - c) * (a - c) + 4.0 * b * b).sqrt())
+}
+
+/// A leaf over which `½|S − x|²` is strictly convex: its Hessian in scaled parameters is at least `modulus`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bowl {
+    scaling: [f64; 3],
+    modulus: f64,
+}
+
+impl Bowl {
+    /// Whether, seen from this `x` alone, `½|S − x|²` is strictly convex over `rect`: the Hessian at the centre against its change, sampled
+    /// at 3 × 3 points and widened by [`BOUND_SAFETY`].
+    pub(crate) fn over(chart: &Chart, rect: &Rect, x: DVec3, center: &Jet) -> Option<Self> {
+        let t = scaling(center)?;
+        let hessian = |jet: &Jet| {
+            let Scaled { first: [a, b], second } = scaled(jet, t);
+            let [aa, ab, bb] = second.map(|s| s.dot(jet[0] - x));
+            [a.dot(a) - 1.0 + aa, a.dot(b) + ab, b.dot(b) - 1.0 + bb]
+        };
+        let middle = hessian(center);
+        let least = smallest(middle);
+        let mut change = 0.0_f64;
+        for k in [0, 1, 2, 3, 5, 6, 7, 8] {
+            let here = hessian(&chart.d2_within(rect, rect.at(f64::from(k / 3) / 2.0, f64::from(k % 3) / 2.0)));
+            let d = [0, 1, 2].map(|i| here[i] - middle[i]);
+            change = change.max((d[0] * d[0] + 2.0 * d[1] * d[1] + d[2] * d[2]).sqrt());
+            if least <= BOUND_SAFETY * change {
+                return None;
+            }
+        }
+        let modulus = least - BOUND_SAFETY * change;
+        (modulus > 0.0).then_some(Self { scaling: t, modulus })
+    }
+
+    /// Lower bound of `|S − x|²` over `rect` from one point `p` of it: a convex function lies above its tangent, and above the
+    /// paraboloid that the least curvature allows.
+    pub(crate) fn floor(&self, rect: &Rect, p: [f64; 2], jet: &Jet, x: DVec3) -> f64 {
+        let r = jet[0] - x;
+        let g = [r.dot(jet[1]), r.dot(jet[2])];
+        let fall = |i: usize, range: [f64; 2]| (g[i] * (range[0] - p[i])).min(g[i] * (range[1] - p[i]));
+        let tangent = fall(0, rect.u) + fall(1, rect.v);
+        let [t0, t1, t2] = self.scaling;
+        let (a, b) = (t0 * g[0], t1 * g[0] + t2 * g[1]);
+        let paraboloid = -(a * a + b * b) / (2.0 * self.modulus);
+        // the differences of large numbers are rounded
+        r.length_squared() * (1.0 - FLOOR_ROUNDING) + 2.0 * tangent.max(paraboloid)
+    }
+}
+
+/// Relative rounding of [`Bowl::floor`].
+const FLOOR_ROUNDING: f64 = 1e-13;
 
 fn norm(second: &[DVec3; 3]) -> f64 {
     (second[0].length_squared() + 2.0 * second[1].length_squared() + second[2].length_squared()).sqrt()
@@ -80,7 +138,8 @@ impl Certificate {
             df = df.max(norm(&[0, 1, 2].map(|i| here.second[i] - center.second[i])));
         }
         let certificate = Self {
-            center: jet[0],
+            jet,
+            scaling: t,
             second: center.second,
             dg: BOUND_SAFETY * dg,
             q: BOUND_SAFETY * q,
@@ -105,8 +164,10 @@ impl Certificate {
             q = q.max(along(t * t * bb));
             df = df.max((t * t * bb - second).length());
         }
+        let zero = DVec3::ZERO;
         let certificate = Self {
-            center: p,
+            jet: [p, a, zero, aa, zero, zero],
+            scaling: [t, 0.0, 0.0],
             second: [second, DVec3::ZERO, DVec3::ZERO],
             dg: BOUND_SAFETY * dg,
             q: BOUND_SAFETY * q,
@@ -116,12 +177,21 @@ impl Certificate {
         (dg + q + df).is_finite().then_some(certificate)
     }
 
-    /// Whether the squared distance from `x` has at most one minimum over the leaf.
-    pub(crate) fn is_convex(&self, x: DVec3) -> bool {
-        let r = self.center - x;
-        let [a, b, c] = self.second.map(|s| s.dot(r));
-        let smallest = 1.0 + 0.5 * ((a + c) - ((a - c) * (a - c) + 4.0 * b * b).sqrt());
-        smallest > self.dg + self.q + r.length() * self.df
+    /// Lower bound of the eigenvalues of the scaled Hessian of `½|S − x|²` over the leaf. Where it is positive, the distance from `x`
+    /// has one minimum only.
+    pub(crate) fn modulus(&self, x: DVec3) -> f64 {
+        let r = self.jet[0] - x;
+        smallest(self.second.map(|s| s.dot(r))) - (self.dg + self.q + r.length() * self.df)
+    }
+
+    /// Point and derivatives at the centre; those of a curve at 0, 1 and 3.
+    pub(crate) fn jet(&self) -> &Jet {
+        &self.jet
+    }
+
+    /// Where the Hessian is at least `modulus`.
+    pub(crate) fn bowl(&self, modulus: f64) -> Bowl {
+        Bowl { scaling: self.scaling, modulus }
     }
 
     /// Turn of the tangents over the leaf, about, in radians (their stretch counts in part); leaves are cut until it is small.

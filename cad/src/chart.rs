@@ -3,11 +3,11 @@
 //! No conversion to NURBS takes place: elementary and swept surfaces keep their closed forms and B-splines are cut into Bezier
 //! spans, so that parameters, pcurves and trims are those of the file.
 
-use crate::bezier::{Bernstein, Knots, project, quotient, restrict};
+use crate::bezier::{Knots, patch_d2, project, quotient, restrict};
 use crate::curve::{Curve, Hull, axes, homogeneous, knots_within, ranges, shift_into};
 use glam::{DVec3, DVec4};
 use opencascade_sys as sys;
-use std::f64::consts::FRAC_PI_4;
+use std::f64::consts::{FRAC_PI_4, TAU};
 use std::sync::Arc;
 
 /// Handle of one of OCCT's surfaces, shared by threads.
@@ -130,22 +130,7 @@ impl Net {
     fn d2_in(&self, span: [usize; 2], u: f64, v: f64) -> Jet {
         let (a, su) = self.u.local(span[0], u);
         let (b, sv) = self.v.local(span[1], v);
-        let (bu, bv) = (Bernstein::at(self.degree[0], a), Bernstein::at(self.degree[1], b));
-        let mut h = [DVec4::ZERO; 6];
-        for (i, row) in self.patch(span).chunks_exact(self.degree[1] + 1).enumerate() {
-            let mut r = [DVec4::ZERO; 3];
-            for (j, &p) in row.iter().enumerate() {
-                r[0] += bv.b[0][j] * p;
-                r[1] += bv.b[1][j] * p;
-                r[2] += bv.b[2][j] * p;
-            }
-            h[0] += bu.b[0][i] * r[0];
-            h[1] += bu.b[1][i] * r[0];
-            h[2] += bu.b[0][i] * r[1];
-            h[3] += bu.b[2][i] * r[0];
-            h[4] += bu.b[1][i] * r[1];
-            h[5] += bu.b[0][i] * r[2];
-        }
+        let h = patch_d2(self.patch(span), self.degree, a, b);
         let d = quotient(h);
         [d[0], d[1] * su, d[2] * sv, d[3] * su * su, d[4] * su * sv, d[5] * sv * sv]
     }
@@ -292,6 +277,30 @@ impl Chart {
 
     fn at(&self, [u, v]: [f64; 2]) -> DVec3 {
         self.d2(u, v)[0]
+    }
+
+    /// Periods in the two directions, 0 for none.
+    pub(crate) fn periods(&self) -> [f64; 2] {
+        match self {
+            Self::Spun { meridian, .. } => [TAU, meridian.period()],
+            Self::Swept { profile, .. } => [profile.period(), 0.0],
+            Self::Net(net) => net.period,
+            Self::Offset { basis, .. } => basis.periods(),
+            Self::Plane { .. } | Self::Opaque { .. } => [0.0; 2],
+        }
+    }
+
+    /// Direction, 0 or 1, in which the part over `rect` is longer or bends more.
+    pub(crate) fn direction(&self, rect: &Rect) -> usize {
+        let [a, b] = rect.size();
+        let at = |s, t| self.d2_within(rect, rect.at(s, t));
+        let center = at(0.5, 0.5);
+        let reach = |d1: DVec3, d2: DVec3, h: f64| d1.length() * h + 4.0 * d2.length() * h * h;
+        let [ends_u, ends_v] = [[at(0.0, 0.5), at(1.0, 0.5)], [at(0.5, 0.0), at(0.5, 1.0)]];
+        let chord = |e: [Jet; 2]| e[0][0].distance(e[1][0]);
+        let u = reach(center[1], center[3], a).max(chord(ends_u));
+        let v = reach(center[2], center[5], b).max(chord(ends_v));
+        usize::from(v > u)
     }
 }
 

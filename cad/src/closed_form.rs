@@ -17,6 +17,22 @@ pub(crate) fn nearest(chart: &Chart, rect: &Rect, x: DVec3) -> Option<Local> {
     Some(Local { parameters, distance_squared: (point - x).length_squared() })
 }
 
+/// The nearest point over a range of a straight line or circle, `None` for other curves.
+pub(crate) fn nearest_on_curve(curve: &Curve, [first, last]: [f64; 2], x: DVec3) -> Option<Local> {
+    let t = match curve {
+        Curve::Line { o, d } => ((x - *o).dot(*d) / d.length_squared()).clamp(first, last),
+        Curve::Conic { o, x: a, y: b } if is_circle(*a, *b) => {
+            clamp_angle((x - *o).dot(*b).atan2((x - *o).dot(*a)), [first, last])
+        }
+        _ => return None,
+    };
+    Some(Local { parameters: [t, 0.0], distance_squared: (curve.d2(t)[0] - x).length_squared() })
+}
+
+fn is_circle(a: DVec3, b: DVec3) -> bool {
+    a.length_squared() == b.length_squared() || (a.length() / b.length() - 1.0).abs() < 1e-15
+}
+
 /// The angle in `lo..=hi` nearest to `angle` on the circle.
 fn clamp_angle(angle: f64, [lo, hi]: [f64; 2]) -> f64 {
     let near = angle - TAU * ((angle - 0.5 * (lo + hi)) / TAU).round();

@@ -4,7 +4,7 @@ use crate::bezier::{Bernstein, Knots, project, quotient, restrict};
 use crate::boxes::Aabb;
 use glam::{DVec3, DVec4};
 use opencascade_sys as sys;
-use std::f64::consts::FRAC_PI_4;
+use std::f64::consts::{FRAC_PI_4, TAU};
 use std::sync::Arc;
 
 /// Handle of one of OCCT's curves, shared by threads.
@@ -90,7 +90,7 @@ impl Spline {
         let span = self.knots.span(t);
         let (local, scale) = self.knots.local(span, t);
         let n = self.degree + 1;
-        let basis = Bernstein::at(self.degree, local);
+        let basis: Bernstein = Bernstein::at(self.degree, local);
         let mut h = [DVec4::ZERO; 6];
         for (i, &p) in self.poles[span * n..][..n].iter().enumerate() {
             h[0] += basis.b[0][i] * p;
@@ -183,6 +183,16 @@ impl Curve {
             }
             Self::Spline(spline) => spline.d2(t),
             Self::Offset { handle, .. } | Self::Opaque { handle } => curve_d2(handle, t),
+        }
+    }
+
+    /// Its period, 0 for none.
+    pub(crate) fn period(&self) -> f64 {
+        match self {
+            Self::Conic { .. } => TAU,
+            Self::Spline(spline) => spline.period,
+            Self::Offset { basis, .. } => basis.period(),
+            Self::Line { .. } | Self::Opaque { .. } => 0.0,
         }
     }
 

@@ -2,19 +2,22 @@
 
 use crate::chart::{Jet, Rect, surface_d2};
 use crate::curve::curve_d2;
-use crate::foot::{End, Foot};
+use crate::foot::{End, Foot, Trace};
 use crate::group::Member;
 use crate::ids::{EdgeId, EntityId, FaceId, VertexId};
-use crate::leaf::{EdgeGeometry, EdgeLeaf, FaceGeometry, FaceLeaf, Side};
+use crate::leaf::{EdgeGeometry, FaceGeometry, FaceLeaf, Side};
 use crate::model::Geometry;
 use crate::newton::{self, ROUNDING};
 use crate::search::{Best, Search};
-use crate::tolerance::{LEAF_MARGIN, ORTHOGONAL, POLISH_LIMIT};
+use crate::tolerance::{LEAF_MARGIN, ORTHOGONAL, POLISH_LIMIT, POLISHED, TIE};
 use glam::DVec3;
 
 /// Golden section, and sections enough for rounding to end the search.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 const GOLDEN_STEPS: usize = 60;
+
+/// Samples of a pcurve before that.
+const SIDE_SAMPLES: usize = 128;
 
 impl Search<'_> {
     /// The winner, evaluated by OCCT.
@@ -24,11 +27,12 @@ impl Search<'_> {
         match self.group.members[best.member] {
             Member::Face { face, leaf } => {
                 let geometry = &geometry.faces[face as usize];
+                let leaf_geometry = &geometry.leaves[leaf as usize];
                 let (parameters, jet) =
-                    polish_surface(geometry, &geometry.leaves[leaf as usize], self.x, best.parameters);
-                let end = self.end_on_face(geometry, &geometry.leaves[leaf as usize], parameters, &jet);
-                let at_trim = matches!(end, End::Stalled { .. }) && geometry.leaves[leaf as usize].crossed;
-                let slid = if at_trim { self.slide_to_trim(best, face as usize, jet[0]) } else { None };
+                    polish_surface(geometry, leaf_geometry, self.x, best.parameters, self.group.diagonal);
+                let end = self.end_on_face(geometry, leaf_geometry, parameters, &jet);
+                let at_trim = matches!(end, End::Stalled { .. }) && leaf_geometry.crossed;
+                let slid = if at_trim { self.slide_to_trim(best, face as usize) } else { None };
                 if let Some(foot) = slid {
                     return foot;
                 }
@@ -48,7 +52,7 @@ impl Search<'_> {
 
     fn foot(&self, best: Best, entity: EntityId, parameters: [f64; 2], point: DVec3, end: End) -> Foot {
         let distance = point.distance(self.x);
-        Foot { point, entity, parameters, distance, end, proven: self.proven, leaf: best.member as u32 }
+        Foot { point, entity, parameters, distance, end, proven: self.proven, trace: self.trace(best.member) }
     }
 
     fn nowhere(&self) -> Foot {
@@ -61,8 +65,12 @@ impl Search<'_> {
             distance: f64::INFINITY,
             end,
             proven: false,
-            leaf: 0,
+            trace: self.trace(usize::MAX),
         }
+    }
+
+    fn trace(&self, member: usize) -> Trace {
+        Trace { group: self.group.number, leaf: member as u32, x: self.x, others: self.others.sqrt() }
     }
 
     fn residual_limit(&self, distance: f64) -> f64 {
@@ -83,26 +91,18 @@ impl Search<'_> {
     }
 
     /// Where the curve of a boundary edge lies beside its pcurve on the surface (within the edge's tolerance), a point of the
-    /// surface at the trim can be nearer than the curve. Finds the nearest point of the surface along the pcurve of the edge that is nearest to `near`.
-    fn slide_to_trim(&self, best: Best, index: usize, near: DVec3) -> Option<Foot> {
-        let geometry = &self.group.geometry;
-        let face = &geometry.faces[index];
+    /// surface at the trim can be nearer than the curve. Finds the nearest point of the surface along the pcurves of the face.
+    fn slide_to_trim(&self, best: Best, index: usize) -> Option<Foot> {
+        let face = &self.group.geometry.faces[index];
         let nearest = |side: &Side| {
-            let edge = geometry.edges[side.edge?].as_ref()?;
-            let on_leaf = |leaf: &EdgeLeaf| {
-                newton::on_curve(&edge.curve, leaf.range, near, 0.5 * (leaf.range[0] + leaf.range[1]))
-            };
-            let local =
-                edge.leaves.iter().map(on_leaf).min_by(|a, b| a.distance_squared.total_cmp(&b.distance_squared))?;
-            let fraction = (local.parameters[0] - edge.range[0]) / (edge.range[1] - edge.range[0]);
-            Some((local.distance_squared, side.range[0] + fraction * (side.range[1] - side.range[0])))
+            let [u, v] = side.nearest_on(face, self.x)?;
+            let point = surface_d2(&face.handle, u, v)[0];
+            Some((point.distance(self.x), [u, v], point, EdgeId::new(side.edge?)))
         };
-        let sides = face.sides.iter().filter_map(|side| Some((nearest(side)?, side)));
-        let ((_, t), side) = sides.min_by(|a, b| a.0.0.total_cmp(&b.0.0))?;
-        let parameters = side.nearest_on(face, self.x, t)?;
-        let point = surface_d2(&face.handle, parameters[0], parameters[1])[0];
-        let end = End::OnTrim(EdgeId::new(side.edge?));
-        (point.distance(self.x) <= best.distance + self.tie())
+        let sides = face.sides.iter().filter_map(nearest);
+        let (distance, parameters, point, edge) = sides.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let end = End::OnTrim(edge);
+        (distance <= best.distance + self.tie())
             .then(|| self.foot(best, FaceId::new(index).into(), parameters, point, end))
     }
 
@@ -139,16 +139,21 @@ fn tangential(r: DVec3, d: DVec3) -> f64 {
 }
 
 /// Newton's last steps on OCCT's own surface, taken while they make the residual smaller.
-fn polish_surface(face: &FaceGeometry, leaf: &FaceLeaf, x: DVec3, mut p: [f64; 2]) -> ([f64; 2], Jet) {
+fn polish_surface(face: &FaceGeometry, leaf: &FaceLeaf, x: DVec3, mut p: [f64; 2], diagonal: f64) -> ([f64; 2], Jet) {
     let mut jet = surface_d2(&face.handle, p[0], p[1]);
     let window = around(face, leaf);
     for _ in 0..POLISH_LIMIT {
+        let distance = jet[0].distance(x);
+        if residual(&jet, x) <= POLISHED * (diagonal + distance) {
+            break;
+        }
         let next = window.clamp(newton::surface_target(&jet, x, p));
         if next.iter().any(|t| !t.is_finite()) || (leaf.crossed && !face.trim.contains(next)) {
             break;
         }
         let polished = surface_d2(&face.handle, next[0], next[1]);
-        let farther = polished[0].distance_squared(x) > jet[0].distance_squared(x) * ROUNDING;
+        // coordinates are rounded relative to the model, not to the distance
+        let farther = polished[0].distance(x) > distance + 0.1 * TIE * diagonal;
         if farther || residual(&polished, x) >= residual(&jet, x) {
             break;
         }
@@ -195,15 +200,18 @@ impl Geometry {
 }
 
 impl Side {
-    /// Parameters of the point of the surface along the pcurve that is nearest to `x`, by golden sections around `t`.
-    fn nearest_on(&self, face: &FaceGeometry, x: DVec3, t: f64) -> Option<[f64; 2]> {
+    /// Parameters of the point of the surface along the pcurve that is nearest to `x`: the best of some samples, then golden sections
+    /// between its neighbours.
+    fn nearest_on(&self, face: &FaceGeometry, x: DVec3) -> Option<[f64; 2]> {
         let at = |t: f64| {
             let mut jet = [0.0; 4];
             self.pcurve.d1(t, &mut jet).ok().map(|()| [jet[0], jet[1]])
         };
         let distance = |t: f64| at(t).map_or(f64::INFINITY, |[u, v]| face.chart.d2(u, v)[0].distance_squared(x));
-        let reach = 0.02 * (self.range[1] - self.range[0]);
-        let (mut low, mut high) = ((t - reach).max(self.range[0]), (t + reach).min(self.range[1]));
+        let [first, last] = self.range;
+        let sample = |k: usize| first + (last - first) * (k as f64 / SIDE_SAMPLES as f64);
+        let near = (0..=SIDE_SAMPLES).min_by(|&a, &b| distance(sample(a)).total_cmp(&distance(sample(b))))?;
+        let (mut low, mut high) = (sample(near.saturating_sub(1)), sample((near + 1).min(SIDE_SAMPLES)));
         for _ in 0..GOLDEN_STEPS {
             let (a, b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
             if distance(a) <= distance(b) {

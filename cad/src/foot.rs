@@ -19,8 +19,27 @@ pub struct Foot {
     pub end: End,
     /// Whether no other point of the group can be nearer (by more than rounding): every leaf was either farther away or had one minimum only.
     pub proven: bool,
-    /// Leaf of the group's tree, where the next query with this hint begins.
+    /// For the next query with this foot as a hint.
+    pub(crate) trace: Trace,
+}
+
+/// What a foot remembers of its search; no part of the answer, so all traces are equal.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Trace {
+    /// Number of the group; traces of other groups are no hints.
+    pub(crate) group: u32,
+    /// Leaf of the group's tree.
     pub(crate) leaf: u32,
+    /// The query point.
+    pub(crate) x: DVec3,
+    /// No other leaf of the group is nearer to the query point.
+    pub(crate) others: f64,
+}
+
+impl PartialEq for Trace {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
 }
 
 /// How a query ended.

@@ -10,7 +10,11 @@ use glam::DVec3;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use rayon::prelude::*;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
 use thiserror::Error;
+
+/// Groups made so far in this process.
+static GROUPS: AtomicU32 = AtomicU32::new(0);
 
 /// Why a group cannot be made.
 #[derive(Debug, Error, PartialEq)]
@@ -59,6 +63,8 @@ pub(crate) enum Member {
 
 /// A set of faces, of edges, or of vertices: the unit of projection. All queries may be made from many threads at once.
 pub struct Group {
+    /// Tells feet of this group from those of others.
+    pub(crate) number: u32,
     pub(crate) geometry: Arc<Geometry>,
     entities: Vec<EntityId>,
     pub(crate) members: Vec<Member>,
@@ -147,7 +153,15 @@ impl Group {
             return Err(GroupError::Void);
         }
         let samples = ImmutableKdTree::new_from_slice(&centers).map_err(|_| GroupError::Void)?;
-        Ok(Self { geometry, entities, members, boxes: BoxTree::new(&boxes), samples, diagonal: model.diagonal() })
+        Ok(Self {
+            number: GROUPS.fetch_add(1, Ordering::Relaxed),
+            geometry,
+            entities,
+            members,
+            boxes: BoxTree::new(&boxes),
+            samples,
+            diagonal: model.diagonal(),
+        })
     }
 
     /// The entities of the group, in ascending order.

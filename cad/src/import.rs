@@ -3,7 +3,7 @@
 use crate::assemble;
 use crate::model::Model;
 use crate::payload::{self, Answer};
-use crate::reader::{MEMORY_VARIABLE, READER_SUBCOMMAND, SCALE_VARIABLE};
+use crate::reader::{MEMORY_VARIABLE, READER_SUBCOMMAND, SCALE_VARIABLE, WARNING_PREFIX};
 use opencascade_sys as sys;
 use std::io::{self, Read};
 use std::os::unix::process::ExitStatusExt;
@@ -78,12 +78,14 @@ pub enum ReadError {
         cause: String,
     },
     /// OCCT crashed on the file.
-    #[error("{}: OpenCASCADE crashed while reading it ({status}): the file is malformed, e.g. has dangling references", path.display())]
+    #[error("{}: OpenCASCADE crashed while reading it ({status}): the file is malformed, e.g. has dangling references{}", path.display(), suspects(warnings))]
     Crashed {
         /// The CAD file.
         path: PathBuf,
         /// Signal or exit code of the child.
         status: ExitStatus,
+        /// What OCCT's checks said of entities before it crashed.
+        warnings: Vec<String>,
     },
     /// Reading took too long.
     #[error("{}: reading took longer than {} s and was ended: a malformed file, or raise the time limit", path.display(), limit.as_secs_f64())]
@@ -109,6 +111,12 @@ pub enum ReadError {
     },
 }
 
+/// The first of the entities that may have been the cause.
+fn suspects(warnings: &[String]) -> String {
+    let first: Vec<&str> = warnings.iter().take(3).map(String::as_str).collect();
+    if first.is_empty() { String::new() } else { format!("; {} malformed: {}", warnings.len(), first.join("; ")) }
+}
+
 impl Model {
     /// Reads a STEP, IGES or BREP file (by content; EGADS files are BREP with a trailer). All lengths come in the unit of the file
     /// times [`ReadOptions::scale`].
@@ -125,7 +133,7 @@ impl Model {
         if !(options.scale.is_finite() && options.scale > 0.0) {
             return Err(ReadError::Scale { path: owned(), scale: options.scale });
         }
-        let (bytes, status) = run(path, options)?;
+        let Outcome { bytes, status, warnings } = run(path, options)?;
         let refused = |cause: String| ReadError::Refused { path: owned(), cause };
         match payload::read(&bytes) {
             Some((Answer::Model(description), shape)) => {
@@ -143,7 +151,7 @@ impl Model {
             None if status.signal() == Some(6) => {
                 Err(ReadError::OutOfMemory { path: owned(), limit: options.memory_limit })
             }
-            None => Err(ReadError::Crashed { path: owned(), status }),
+            None => Err(ReadError::Crashed { path: owned(), status, warnings }),
         }
     }
 }
@@ -152,8 +160,18 @@ fn is_memory(cause: &str) -> bool {
     cause.contains("bad_alloc") || cause.contains("Standard_OutOfMemory")
 }
 
+/// What came of the child.
+struct Outcome {
+    bytes: Vec<u8>,
+    status: ExitStatus,
+    warnings: Vec<String>,
+}
+
+/// Bytes of the child's standard error that are looked at.
+const ERRORS: u64 = 1 << 20;
+
 /// Runs the child to its end or the time limit; gives what it wrote.
-fn run(path: &Path, options: &ReadOptions) -> Result<(Vec<u8>, ExitStatus), ReadError> {
+fn run(path: &Path, options: &ReadOptions) -> Result<Outcome, ReadError> {
     let failed = |source| ReadError::Reader { path: path.to_path_buf(), reader: options.reader.clone(), source };
     let mut child = Command::new(&options.reader)
         .arg(READER_SUBCOMMAND)
@@ -162,23 +180,36 @@ fn run(path: &Path, options: &ReadOptions) -> Result<(Vec<u8>, ExitStatus), Read
         .env(SCALE_VARIABLE, options.scale.to_string())
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
-        .stderr(Stdio::null())
+        .stderr(Stdio::piped())
         .spawn()
         .map_err(failed)?;
-    let Some(mut pipe) = child.stdout.take() else { return Err(failed(io::Error::other("it has no standard output"))) };
+    let (Some(mut pipe), Some(errors)) = (child.stdout.take(), child.stderr.take()) else {
+        return Err(failed(io::Error::other("it has no standard output")));
+    };
     let (sender, receiver) = mpsc::channel();
     let reading = std::thread::spawn(move || {
         let mut bytes = Vec::new();
         let result = pipe.read_to_end(&mut bytes).map(|_| bytes);
         let _ = sender.send(result); // the receiver has gone after a time-out
     });
+    let listening = std::thread::spawn(move || warnings_in(errors));
     let Ok(bytes) = receiver.recv_timeout(options.timeout) else {
         end(&mut child);
         let _ = reading.join();
         return Err(ReadError::TimedOut { path: path.to_path_buf(), limit: options.timeout });
     };
     let status = child.wait().map_err(failed)?;
-    Ok((bytes.map_err(failed)?, status))
+    Ok(Outcome { bytes: bytes.map_err(failed)?, status, warnings: listening.join().unwrap_or_default() })
+}
+
+/// Warnings among the first lines of the child's standard error; the rest is read and dropped, so that the child never waits.
+fn warnings_in(mut errors: impl Read) -> Vec<String> {
+    let mut bytes = Vec::new();
+    let mut head = errors.by_ref().take(ERRORS);
+    let _ = head.read_to_end(&mut bytes); // what was read before an error counts
+    let _ = io::copy(&mut errors, &mut io::sink());
+    let text = String::from_utf8_lossy(&bytes);
+    text.lines().filter_map(|line| line.strip_prefix(WARNING_PREFIX)).map(str::to_owned).collect()
 }
 
 /// Ends the child and collects it; it may have ended by itself meanwhile.

@@ -7,7 +7,6 @@ use crate::curve::{Curve, CurveHandle, Hull};
 use crate::slab::Slab;
 use crate::tolerance::{LEAF_DEPTH, LEAF_TURN, POINT, TRIM_DEPTH};
 use crate::trim::Trim;
-use glam::DVec3;
 use opencascade_sys as sys;
 
 /// A piece of a face.
@@ -71,19 +70,6 @@ impl FaceLeaf {
         let slab = Slab::new(&hull, jet[1], jet[2]);
         Self { rect, bounds: hull.bounds(), slab, certificate, crossed, sound: hull.sound }
     }
-
-    /// Direction, 0 or 1, in which the leaf is longer or bends more.
-    pub(crate) fn direction(&self, chart: &Chart) -> usize {
-        let [a, b] = self.rect.size();
-        let at = |s, t| chart.d2_within(&self.rect, self.rect.at(s, t));
-        let center = at(0.5, 0.5);
-        let reach = |d1: DVec3, d2: DVec3, h: f64| d1.length() * h + 4.0 * d2.length() * h * h;
-        let [ends_u, ends_v] = [[at(0.0, 0.5), at(1.0, 0.5)], [at(0.5, 0.0), at(0.5, 1.0)]];
-        let chord = |e: [crate::chart::Jet; 2]| e[0][0].distance(e[1][0]);
-        let u = reach(center[1], center[3], a).max(chord(ends_u));
-        let v = reach(center[2], center[5], b).max(chord(ends_v));
-        usize::from(v > u)
-    }
 }
 
 impl EdgeLeaf {
@@ -125,7 +111,7 @@ fn cut_face(chart: &Chart, trim: &Trim, leaf: FaceLeaf, depth: u32, leaves: &mut
         leaves.push(leaf);
         return;
     }
-    for half in leaf.rect.halves(leaf.direction(chart)) {
+    for half in leaf.rect.halves(chart.direction(&leaf.rect)) {
         let crossed = leaf.crossed && trim.enters(&half);
         cut_face(chart, trim, FaceLeaf::new(chart, half, crossed), depth + 1, leaves);
     }

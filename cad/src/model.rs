@@ -3,10 +3,11 @@
 use crate::boxes::Aabb;
 use crate::ids::{EdgeId, EntityId, FaceId, VertexId};
 use crate::leaf::{EdgeGeometry, FaceGeometry};
+use crate::sewing::Sewing;
 use glam::DVec3;
 use std::fmt;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// What a face or an edge is, as the file says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -73,7 +74,7 @@ pub struct Unit {
 pub struct Label {
     /// Name, trimmed.
     pub name: String,
-    /// `step:#17` or `iges:D19`.
+    /// `step:#17`, `step:#17@4/2` in instance 2 of instance 4 of an assembly, or `iges:D19`.
     pub reference: String,
 }
 
@@ -166,6 +167,8 @@ pub struct Model {
     pub(crate) vertices: Vec<Vertex>,
     pub(crate) groups: Vec<NamedGroup>,
     pub(crate) dropped: Vec<String>,
+    pub(crate) warnings: Vec<String>,
+    pub(crate) sewing: OnceLock<Sewing>,
     pub(crate) bounds: Aabb,
     pub(crate) geometry: Arc<Geometry>,
 }
@@ -219,6 +222,11 @@ impl Model {
     /// Entities of the file that came to no shape, by reference, with a reason where OCCT gives one.
     pub fn dropped(&self) -> &[String] {
         &self.dropped
+    }
+
+    /// What OCCT's checks say of entities of the file, by reference; the model may be right nevertheless.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
     }
 
     /// Close box of all entities, see [`Face::bounds`].

@@ -47,18 +47,52 @@ pub(crate) fn surface_target(jet: &Jet, x: DVec3, p: [f64; 2]) -> [f64; 2] {
 
 /// Nearest point over `rect` as Newton finds it from `start`.
 pub(crate) fn on_surface(chart: &Chart, rect: &Rect, x: DVec3, start: [f64; 2]) -> Local {
-    let mut p = rect.clamp(start);
-    let mut jet = chart.d2_within(rect, p);
+    let p = rect.clamp(start);
+    let never = |_: [f64; 2], _: &Jet| 0.0;
+    match from_jet(chart, rect, x, p, chart.d2_within(rect, p), f64::INFINITY, never) {
+        Found::Minimum(local) => local,
+        Found::TooFar(distance_squared) => Local { parameters: p, distance_squared },
+    }
+}
+
+/// What [`from_jet`] found.
+pub(crate) enum Found {
+    /// The nearest point.
+    Minimum(Local),
+    /// No point is nearer than this squared distance, which is beyond the limit.
+    TooFar(f64),
+}
+
+/// [`on_surface`] from a point whose derivatives are known, given up as soon as `floor`, a lower bound of the squared distance, exceeds
+/// `limit`.
+pub(crate) fn from_jet(
+    chart: &Chart,
+    rect: &Rect,
+    x: DVec3,
+    mut p: [f64; 2],
+    mut jet: Jet,
+    limit: f64,
+    floor: impl Fn([f64; 2], &Jet) -> f64,
+) -> Found {
     let mut f = (jet[0] - x).length_squared();
     let size = rect.size().map(|s| s.max(f64::MIN_POSITIVE));
     let bounds = [rect.u, rect.v];
     for _ in 0..NEWTON_LIMIT {
+        if f > limit {
+            let floor = floor(p, &jet);
+            if floor > limit {
+                return Found::TooFar(floor);
+            }
+        }
         let held = |i: usize, g: f64| (p[i] <= bounds[i][0] && g >= 0.0) || (p[i] >= bounds[i][1] && g <= 0.0);
         let mut s = step(&jet, x, held);
         let relative = |q: [f64; 2]| ((q[0] - p[0]).abs() / size[0]).max((q[1] - p[1]).abs() / size[1]);
         let (mut next, mut next_jet, mut next_f);
         loop {
             next = rect.clamp([p[0] + s[0], p[1] + s[1]]);
+            if next == p {
+                return Found::Minimum(Local { parameters: p, distance_squared: f });
+            }
             next_jet = chart.d2_within(rect, next);
             next_f = (next_jet[0] - x).length_squared();
             if next_f <= f * ROUNDING || relative(next) < TRUSTED_STEP || !s[0].is_finite() || !s[1].is_finite() {
@@ -79,7 +113,7 @@ pub(crate) fn on_surface(chart: &Chart, rect: &Rect, x: DVec3, start: [f64; 2]) 
             break;
         }
     }
-    Local { parameters: p, distance_squared: f }
+    Found::Minimum(Local { parameters: p, distance_squared: f })
 }
 
 fn curve_step([p, d, dd]: &CurveJet, x: DVec3) -> (f64, f64) {

@@ -23,6 +23,7 @@ pub(crate) struct Description {
     pub(crate) millimetres: f64,
     pub(crate) labels: Vec<RawLabel>,
     pub(crate) dropped: Vec<String>,
+    pub(crate) warnings: Vec<String>,
 }
 
 impl Description {

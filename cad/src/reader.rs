@@ -21,6 +21,9 @@ pub(crate) const MEMORY_VARIABLE: &str = "SAGITTA_READER_MEMORY";
 /// Variable in which the parent hands [`ReadOptions::scale`](crate::ReadOptions::scale) to the child.
 pub(crate) const SCALE_VARIABLE: &str = "SAGITTA_READER_SCALE";
 
+/// How lines of the child's standard error begin that tell of malformed entities.
+pub(crate) const WARNING_PREFIX: &str = "sagitta-warning ";
+
 /// Body of the hidden subcommand: reads the file with OCCT, rehearses on every entity what the parent will do, and writes the model to
 /// standard output. Nothing else reaches standard output, whatever OCCT prints.
 pub fn serve_reader(path: &Path) -> ExitCode {
@@ -81,6 +84,7 @@ fn read(path: &Path) -> Result<(Description, Vec<u8>), String> {
         millimetres: import.millimetres_per_unit(),
         labels: import.labels().into_iter().map(label).collect(),
         dropped: import.dropped(),
+        warnings: import.warnings(),
     };
     let shape = import.shape().bytes().map_err(|error| error.to_string())?;
     let restored = sys::shape_from_bytes(&shape).map_err(|error| error.to_string())?;

@@ -4,11 +4,12 @@
 //! |---|---|
 //! | `name:"WING UPPER"`, `name:WING` | the entity, or the ready group, of that name |
 //! | `step:#17`, `iges:D19` | the entity with that id in its file; an IGES 402 group |
+//! | `step:#17@4/2` | that entity in instance 2 of instance 4 of an assembly; without the path where there is only one |
 //! | `face:7`, `edge-12`, `vertex:3` | by number, 1-based |
-//! | `faces:#17\|#137`, `faces:3\|4` | the edges that two faces share |
+//! | `faces:#17\|#137`, `faces:3\|4` | the edges that two faces share; of doubled edges between faces that are not sewn, the first |
 
 use crate::ids::{EdgeId, EntityId, FaceId, VertexId};
-use crate::model::Model;
+use crate::model::{Edge, Model};
 use thiserror::Error;
 
 /// Why a reference does not lead to an entity.
@@ -105,8 +106,9 @@ impl Model {
     }
 
     fn by_origin(&self, reference: &str, origin: &str) -> Result<Vec<EntityId>, ReferenceError> {
+        let answers = |of: &str| of.strip_prefix(origin).is_some_and(|rest| rest.is_empty() || rest.starts_with('@'));
         let found: Vec<EntityId> =
-            self.labelled().filter(|(_, label)| label.reference == origin).map(|(id, _)| id).collect();
+            self.labelled().filter(|(_, label)| answers(&label.reference)).map(|(id, _)| id).collect();
         match found.len() {
             0 => match self.groups().iter().find(|group| group.reference == origin) {
                 Some(group) => Ok(group.faces.iter().map(|&id| id.into()).collect()),
@@ -134,12 +136,18 @@ impl Model {
 
     fn between(&self, reference: &str, a: &str, b: &str) -> Result<Vec<EntityId>, ReferenceError> {
         let (a, b) = (self.side(reference, a)?, self.side(reference, b)?);
-        let shared: Vec<EntityId> = self
-            .edges()
-            .iter()
-            .filter(|edge| edge.faces.contains(&a) && edge.faces.contains(&b) && (a != b || edge.seam))
-            .map(|edge| edge.id.into())
-            .collect();
+        let between = |edge: &&Edge| edge.faces.contains(&a) && edge.faces.contains(&b) && (a != b || edge.seam);
+        let mut shared: Vec<EntityId> = self.edges().iter().filter(between).map(|edge| edge.id.into()).collect();
+        if shared.is_empty() {
+            // not sewn: an edge of one face that is doubled by one of the other, or a seam by one of the same
+            let of = |set: &[EdgeId], face| {
+                set.iter().filter(|&&edge| self.edge(edge).is_some_and(|edge| edge.faces.contains(&face))).count()
+            };
+            let needed = if a == b { 2 } else { 1 };
+            let sets = self.sewing().merged.iter();
+            let common = sets.filter(|set| of(set, a) >= needed && of(set, b) >= needed);
+            shared.extend(common.filter_map(|set| set.first()).map(|&edge| EntityId::Edge(edge)));
+        }
         if shared.is_empty() { Err(self.unknown(reference, format!("{a} and {b} share no edge"))) } else { Ok(shared) }
     }
 }

@@ -1,19 +1,22 @@
 //! The search for the closest point of a group.
 //!
-//! 1. A first foot from the hint's leaf or, without one, the leaf of the nearest sample.
+//! 1. A first foot from the hint's leaf or, without one, the leaf of the nearest sample. With a hint the search may end here: its trace
+//!    tells how far all other leaves were from the hint's query point, and the way from there to here takes away no more than its length.
 //! 2. Every leaf whose hull box is nearer than the best foot so far is visited: closed form, or Newton where the leaf's
-//!    [certificate](crate::certificate) says that one start is enough, else the leaf is cut until it does.
+//!    [certificate](crate::certificate) says that one start is enough (given up as soon as convexity tells that the leaf is too
+//!    far away), else the leaf is cut until it does.
 //! 3. The winner is evaluated by OCCT on the original surface or curve, and its residual checked there.
 //!
 //! The foot on a trimmed face is a minimum inside the trim or a point of a boundary edge, and the edges are leaves of the same tree.
 
-use crate::certificate::Certificate;
-use crate::chart::Rect;
+use crate::certificate::{Bowl, Certificate};
+use crate::chart::{Jet, Rect};
 use crate::closed_form;
 use crate::foot::Foot;
 use crate::group::{Group, Member};
 use crate::leaf::{EdgeGeometry, EdgeLeaf, FaceGeometry, FaceLeaf};
-use crate::newton::{self, Local};
+use crate::newton::{self, Found, Local};
+use crate::slab::Slab;
 use crate::tolerance::{CUT_BUDGET, POINT, TIE};
 use glam::DVec3;
 
@@ -32,6 +35,8 @@ pub(crate) struct Search<'a> {
     pub(crate) best: Option<Best>,
     budget: usize,
     pub(crate) proven: bool,
+    /// Squared distance that no leaf but that of `best` falls short of; 0 where not known.
+    pub(crate) others: f64,
     /// Leaves of faces that must be cut, with their first local minimum: they wait until the bound is as small as the others make it.
     deferred: Vec<(usize, Local)>,
 }
@@ -40,27 +45,41 @@ impl Group {
     /// The closest point of the group to `x`, trims respected. `hint` is the foot of an earlier query to this group nearby: it
     /// makes the query faster, never wrong. A query point that is not finite gives a foot at infinite distance.
     pub fn closest(&self, x: DVec3, hint: Option<&Foot>) -> Foot {
-        let mut search = Search { group: self, x, best: None, budget: CUT_BUDGET, proven: true, deferred: Vec::new() };
-        let hinted = hint.map(|foot| foot.leaf as usize).filter(|&leaf| leaf < self.members.len());
+        let mut search = Search::new(self, x);
         if x.is_finite() {
-            let seed = hinted.unwrap_or_else(|| self.seed(x));
-            let start = hint.filter(|_| hinted.is_some()).map(|foot| foot.parameters);
-            search.visit(seed, start.filter(|p| p[0].is_finite() && p[1].is_finite()));
-            self.boxes.visit(x, search.bound(), |leaf, bound| {
-                if leaf != seed {
-                    search.visit(leaf, None);
-                    search.bound()
-                } else {
-                    bound
-                }
-            });
-            search.cut_deferred();
+            let hint = hint.filter(|foot| foot.trace.group == self.number && foot.distance.is_finite());
+            let seed = hint.map_or_else(|| self.seed(x), |foot| foot.trace.leaf as usize);
+            search.visit(seed, hint.map(|foot| foot.parameters));
+            if !hint.is_some_and(|hint| search.stays_with(hint)) {
+                search.visit_all_but(seed);
+            }
+        }
+        search.finish()
+    }
+
+    /// The foot that Newton's method finds on the whole face or edge from the nearest sample: what a search without proof gives, for
+    /// benchmarks. Where the group is trimmed, its answer may lie outside.
+    #[doc(hidden)]
+    pub fn closest_without_proof(&self, x: DVec3) -> Foot {
+        let mut search = Search { proven: false, ..Search::new(self, x) };
+        let seed = self.seed(x);
+        match self.members[seed] {
+            Member::Face { face, leaf } => {
+                let face = &self.geometry.faces[face as usize];
+                let start = face.leaves[leaf as usize].rect.center();
+                search.offer(seed, newton::on_surface(&face.chart, &face.rect, x, start));
+            }
+            _ => search.visit(seed, None),
         }
         search.finish()
     }
 }
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    fn new(group: &'a Group, x: DVec3) -> Self {
+        Self { group, x, best: None, budget: CUT_BUDGET, proven: true, others: f64::INFINITY, deferred: Vec::new() }
+    }
+
     pub(crate) fn tie(&self) -> f64 {
         TIE * self.group.diagonal
     }
@@ -70,13 +89,48 @@ impl Search<'_> {
         self.best.map_or(f64::INFINITY, |best| (best.distance + self.tie()).powi(2))
     }
 
+    /// Whether the foot found on the leaf of `hint` is the closest point: all other leaves are farther away than it.
+    fn stays_with(&mut self, hint: &Foot) -> bool {
+        let Some(best) = self.best.filter(|_| hint.proven && self.proven && self.deferred.is_empty()) else {
+            return false;
+        };
+        let others = hint.trace.others - hint.trace.x.distance(self.x);
+        // the hint's own leaf alone has been visited so far
+        let stays = self.others > 0.0 && best.distance + self.tie() < others * (1.0 - 1e-12);
+        if stays {
+            self.others = self.others.min(others * others);
+        }
+        stays
+    }
+
+    fn visit_all_but(&mut self, seed: usize) {
+        let group = self.group;
+        let skipped = group.boxes.visit(self.x, self.bound(), |leaf, bound| {
+            if leaf != seed {
+                self.visit(leaf, None);
+                self.bound()
+            } else {
+                bound
+            }
+        });
+        self.others = self.others.min(skipped);
+        self.cut_deferred();
+    }
+
+    /// A local minimum at which the foot may lie.
     fn offer(&mut self, member: usize, local: Local) {
         let distance = local.distance_squared.sqrt();
         let better = |best: Best| {
             distance < best.distance - self.tie() || (distance <= best.distance + self.tie() && member < best.member)
         };
-        if distance.is_finite() && self.best.is_none_or(better) {
+        if !distance.is_finite() {
+            self.others = 0.0;
+        } else if self.best.is_none_or(better) {
+            let beaten = self.best.filter(|best| best.member != member);
+            self.others = self.others.min(beaten.map_or(f64::INFINITY, |best| best.distance * best.distance));
             self.best = Some(Best { member, parameters: local.parameters, distance });
+        } else {
+            self.others = self.others.min(local.distance_squared);
         }
     }
 
@@ -99,28 +153,64 @@ impl Search<'_> {
         }
     }
 
-    fn is_decided(&self, certificate: Option<&Certificate>) -> bool {
-        certificate.is_some_and(|c| c.is_convex(self.x) || c.radius() < POINT * self.group.diagonal)
-    }
-
     fn offer_on_face(&mut self, index: usize, face: &FaceGeometry, leaf: &FaceLeaf, local: Local) {
         if local.distance_squared <= self.bound() && (!leaf.crossed || face.trim.contains(local.parameters)) {
             self.offer(index, local);
+        } else {
+            self.others = self.others.min(local.distance_squared);
         }
     }
 
+    /// Whether an oriented box is too far away to matter.
+    fn is_far(&mut self, slab: &Slab) -> bool {
+        let distance_squared = slab.distance_squared(self.x);
+        let far = distance_squared > self.bound();
+        if far {
+            self.others = self.others.min(distance_squared);
+        }
+        far
+    }
+
     fn visit_face(&mut self, index: usize, face: &FaceGeometry, leaf: &FaceLeaf, start: Option<[f64; 2]>) {
-        if leaf.slab.distance_squared(self.x) > self.bound() {
+        if self.is_far(&leaf.slab) {
             return;
         }
         if let Some(local) = closed_form::nearest(&face.chart, &leaf.rect, self.x) {
             return self.offer_on_face(index, face, leaf, local);
         }
         self.proven &= leaf.sound;
+        let start = start.filter(|p| p[0].is_finite() && p[1].is_finite()).map(|p| leaf.rect.clamp(p));
+        if let Some(certificate) = &leaf.certificate {
+            let modulus = certificate.modulus(self.x);
+            if modulus > 0.0 || certificate.radius() < POINT * self.group.diagonal {
+                let from = match start {
+                    Some(p) => (p, face.chart.d2_within(&leaf.rect, p)),
+                    None => (leaf.rect.center(), *certificate.jet()),
+                };
+                let bowl = (modulus > 0.0).then(|| certificate.bowl(modulus));
+                return self.descend(index, face, leaf, &leaf.rect, from, bowl);
+            }
+        }
         let local = newton::on_surface(&face.chart, &leaf.rect, self.x, start.unwrap_or(leaf.rect.center()));
         self.offer_on_face(index, face, leaf, local);
-        if !self.is_decided(leaf.certificate.as_ref()) {
-            self.deferred.push((index, local));
+        self.deferred.push((index, local));
+    }
+
+    /// Newton over a part with one minimum, as long as that may be nearer than the best foot.
+    fn descend(
+        &mut self,
+        index: usize,
+        face: &FaceGeometry,
+        leaf: &FaceLeaf,
+        rect: &Rect,
+        (p, jet): ([f64; 2], Jet),
+        bowl: Option<Bowl>,
+    ) {
+        let x = self.x;
+        let floor = |p: [f64; 2], jet: &Jet| bowl.map_or(0.0, |bowl| bowl.floor(rect, p, jet, x));
+        match newton::from_jet(&face.chart, rect, x, p, jet, self.bound(), floor) {
+            Found::Minimum(local) => self.offer_on_face(index, face, leaf, local),
+            Found::TooFar(floor) => self.others = self.others.min(floor),
         }
     }
 
@@ -130,7 +220,12 @@ impl Search<'_> {
             let Member::Face { face, leaf } = group.members[index] else { continue };
             let face = &group.geometry.faces[face as usize];
             let leaf = &face.leaves[leaf as usize];
-            if leaf.slab.distance_squared(self.x) <= self.bound() && !self.is_beyond(face, leaf.rect, local) {
+            if self.is_far(&leaf.slab) {
+                continue;
+            }
+            if self.is_beyond(face, leaf.rect, local) {
+                self.others = self.others.min(self.beyond());
+            } else {
                 self.cut_face(index, face, leaf, local);
             }
         }
@@ -138,30 +233,46 @@ impl Search<'_> {
 
     /// Whether no point of `rect` is nearer than the foot so far, or than its own `local` minimum: its hull is beyond a plane there.
     fn is_beyond(&self, face: &FaceGeometry, rect: Rect, local: Local) -> bool {
-        let Some(best) = self.best else { return false };
         let p = face.chart.d2(local.parameters[0], local.parameters[1])[0];
-        let gain = local.distance_squared.sqrt() - best.distance;
-        face.chart.hull(rect).is_beyond(self.x, p, gain.max(0.0) + self.tie())
+        self.best.is_some() && face.chart.hull(rect).is_beyond(self.x, p, self.gain(local))
+    }
+
+    /// Squared distance that parts found by [`Search::is_beyond`] do not fall short of.
+    fn beyond(&self) -> f64 {
+        self.best.map_or(0.0, |best| (best.distance - self.tie()).max(0.0).powi(2))
+    }
+
+    /// How much nearer than `local` a point must be to matter.
+    fn gain(&self, local: Local) -> f64 {
+        let best = self.best.map_or(f64::INFINITY, |best| best.distance);
+        (local.distance_squared.sqrt() - best).max(0.0) + self.tie()
     }
 
     /// Cuts a leaf until each part is too far away, or has one minimum only, or is a point.
     fn cut_face(&mut self, index: usize, face: &FaceGeometry, leaf: &FaceLeaf, local: Local) {
         let mut parts = Vec::new();
-        self.cut_part(face, leaf, local, &mut parts);
+        self.cut_part(face, &leaf.rect, local, &mut parts);
         while let Some(rect) = parts.pop() {
             let hull = face.chart.hull(rect);
-            if hull.bounds().distance_squared(self.x) > self.bound() {
+            let bounds = hull.bounds();
+            let distance_squared = bounds.distance_squared(self.x);
+            if distance_squared > self.bound() {
+                self.others = self.others.min(distance_squared);
+                continue;
+            }
+            let center = face.chart.d2_within(&rect, rect.center());
+            if self.is_far(&Slab::new(&hull, center[1], center[2])) {
+                continue;
+            }
+            if let Some(bowl) = Bowl::over(&face.chart, &rect, self.x, &center) {
+                self.descend(index, face, leaf, &rect, (rect.center(), center), Some(bowl));
                 continue;
             }
             let local = newton::on_surface(&face.chart, &rect, self.x, rect.center());
             self.offer_on_face(index, face, leaf, local);
-            if self.is_beyond(face, rect, local) {
-                continue;
-            }
-            let part = FaceLeaf::new(&face.chart, rect, leaf.crossed);
-            let far = part.slab.distance_squared(self.x) > self.bound();
-            if far || self.is_decided(part.certificate.as_ref()) || part.bounds.diagonal() < POINT * self.group.diagonal
-            {
+            let p = face.chart.d2_within(&rect, local.parameters)[0];
+            if hull.is_beyond(self.x, p, self.gain(local)) || bounds.diagonal() < POINT * self.group.diagonal {
+                self.others = self.others.min(self.beyond());
                 continue;
             }
             if self.budget == 0 {
@@ -169,33 +280,45 @@ impl Search<'_> {
                 return;
             }
             self.budget -= 1;
-            self.cut_part(face, &part, local, &mut parts);
+            self.cut_part(face, &rect, local, &mut parts);
         }
     }
 
     /// Pushes the parts of a leaf, nearest last: four around a foot inside, else two halves.
-    fn cut_part(&self, face: &FaceGeometry, part: &FaceLeaf, local: Local, parts: &mut Vec<Rect>) {
-        let ([u, v], [du, dv]) = (local.parameters, part.rect.size());
+    fn cut_part(&self, face: &FaceGeometry, part: &Rect, local: Local, parts: &mut Vec<Rect>) {
+        let ([u, v], [du, dv]) = (local.parameters, part.size());
         let inside = |t: f64, range: [f64; 2], size: f64| t > range[0] + 0.01 * size && t < range[1] - 0.01 * size;
-        if inside(u, part.rect.u, du) && inside(v, part.rect.v, dv) {
-            parts.extend(part.rect.quarters([u, v]));
+        if inside(u, part.u, du) && inside(v, part.v, dv) {
+            parts.extend(part.quarters([u, v]));
             return;
         }
         let distance = |rect: Rect| face.chart.hull(rect).bounds().distance_squared(self.x);
-        let mut halves = part.rect.halves(part.direction(&face.chart)).map(|half| (distance(half), half));
+        let mut halves = part.halves(face.chart.direction(part)).map(|half| (distance(half), half));
         halves.sort_by(|a, b| b.0.total_cmp(&a.0));
         parts.extend(halves.map(|(_, half)| half));
     }
 
+    fn is_decided(&self, certificate: Option<&Certificate>) -> bool {
+        certificate.is_some_and(|c| c.modulus(self.x) > 0.0 || c.radius() < POINT * self.group.diagonal)
+    }
+
     fn visit_edge(&mut self, index: usize, edge: &EdgeGeometry, leaf: &EdgeLeaf) {
-        if leaf.slab.distance_squared(self.x) > self.bound() {
+        if self.is_far(&leaf.slab) {
             return;
         }
+        if let Some(local) = closed_form::nearest_on_curve(&edge.curve, leaf.range, self.x) {
+            return self.offer(index, local);
+        }
         self.proven &= leaf.sound;
-        let mut parts: Vec<EdgeLeaf> = Vec::new();
-        let mut next = Some(leaf.clone());
-        while let Some(part) = next.take().or_else(|| parts.pop()) {
-            if part.slab.distance_squared(self.x) > self.bound() {
+        if self.is_decided(leaf.certificate.as_ref()) {
+            return self.offer(
+                index,
+                newton::on_curve(&edge.curve, leaf.range, self.x, 0.5 * (leaf.range[0] + leaf.range[1])),
+            );
+        }
+        let mut parts: Vec<EdgeLeaf> = vec![leaf.clone()];
+        while let Some(part) = parts.pop() {
+            if self.is_far(&part.slab) {
                 continue;
             }
             let [a, b] = part.range;

@@ -22,6 +22,9 @@ pub const LEAF_MARGIN: f64 = 1e-5;
 /// Newton steps on OCCT's own surface after the search.
 pub const POLISH_LIMIT: usize = 4;
 
+/// Residual, as for [`ORTHOGONAL`], below which polishing has nothing to gain.
+pub const POLISHED: f64 = 1e-13;
+
 /// Cuts of leaves that one query may spend to prove its answer; beyond it the foot is reported as not proven.
 pub const CUT_BUDGET: usize = 400;
 
@@ -33,6 +36,15 @@ pub const LEAF_DEPTH: u32 = 8;
 
 /// Levels of cutting of leaves that a trim crosses, when a model is built.
 pub const TRIM_DEPTH: u32 = 4;
+
+/// Two open edges closer than this (or the tolerances of the file) are one. Fraction of the diagonal.
+pub const SEWING: f64 = 1e-7;
+
+/// An edge shorter than this, or a face whose box is, is called tiny. Fraction of the diagonal.
+pub const TINY: f64 = 1e-6;
+
+/// A pcurve that lies farther from its edge than this many tolerances of the edge is called inconsistent.
+pub const TRIM_GAP: f64 = 2.0;
 
 /// Sampled derivative bounds of a leaf are widened by this factor.
 pub const BOUND_SAFETY: f64 = 1.5;

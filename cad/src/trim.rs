@@ -107,10 +107,13 @@ fn enters(points: &[DVec4], min: DVec2, max: DVec2, depth: u32) -> bool {
     enters(&left, min, max, depth - 1) || enters(&right, min, max, depth - 1)
 }
 
-impl Trim {
-    /// Adds the pcurves of one wire, each given by its spans and whether it runs backwards, in the order in which they connect.
-    pub(crate) fn add_wire<'a>(&mut self, pcurves: impl Iterator<Item = (&'a sys::Spans, bool)>) {
-        let start = self.pieces.len();
+/// The pieces of one wire.
+pub(crate) struct Wire(Vec<Piece>);
+
+impl Wire {
+    /// The pcurves of a wire, each given by its spans and whether it runs backwards, in the order in which they connect.
+    pub(crate) fn new<'a>(pcurves: impl Iterator<Item = (&'a sys::Spans, bool)>) -> Self {
+        let mut wire = Self(Vec::new());
         for (spans, reversed) in pcurves {
             let count = spans.degree_u as usize + 1;
             let poles = crate::curve::homogeneous(&spans.poles);
@@ -119,20 +122,68 @@ impl Trim {
                 pieces.reverse();
                 pieces.iter_mut().for_each(|piece| piece.points.reverse());
             }
-            if self.pieces.len() > start {
-                self.join(self.pieces[self.pieces.len() - 1].end(), pieces.first().map(Piece::start));
-            }
-            self.pieces.extend(pieces);
+            wire.join(pieces.first().map(Piece::start));
+            wire.0.extend(pieces);
         }
-        if self.pieces.len() > start {
-            self.join(self.pieces[self.pieces.len() - 1].end(), Some(self.pieces[start].start()));
+        wire.join(wire.0.first().map(Piece::start));
+        wire
+    }
+
+    /// Leads the wire on to a point, by a straight line.
+    fn join(&mut self, to: Option<DVec2>) {
+        let from = self.0.last().map(Piece::end);
+        if let (Some(from), Some(to)) = (from, to.filter(|&to| Some(to) != from)) {
+            self.0.push(Piece::new([from, to].map(|p| DVec4::new(p.x, p.y, 0.0, 1.0)).to_vec()));
         }
     }
 
-    fn join(&mut self, from: DVec2, to: Option<DVec2>) {
-        if let Some(to) = to.filter(|&to| to != from) {
-            self.pieces.push(Piece::new([from, to].map(|p| DVec4::new(p.x, p.y, 0.0, 1.0)).to_vec()));
+    fn bounds(&self) -> (DVec2, DVec2) {
+        self.0
+            .iter()
+            .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(min, max), piece| (min.min(piece.min), max.max(piece.max)))
+    }
+
+    fn moved(mut self, by: DVec2) -> Self {
+        for piece in &mut self.0 {
+            piece.points.iter_mut().for_each(|p| *p += (by * p.w).extend(0.0).extend(0.0));
+            (piece.min, piece.max) = (piece.min + by, piece.max + by);
         }
+        self
+    }
+}
+
+/// Whole periods that bring the middle of `inner` into `outer`.
+fn periods_off(outer: [f64; 2], inner: [f64; 2], period: f64) -> f64 {
+    let middle = 0.5 * (inner[0] + inner[1]);
+    let inside = middle >= outer[0] && middle <= outer[1];
+    if period > 0.0 && !inside { -period * ((middle - outer[0]) / period).floor() } else { 0.0 }
+}
+
+impl Trim {
+    /// The boundary by its wires. On a surface with `periods` (0 for none) a hole may stand whole periods beside the outer wire; it
+    /// is brought back, and the box of the outer wire handed out: the range of parameters that the face has then.
+    pub(crate) fn new(wires: Vec<Wire>, periods: [f64; 2]) -> (Self, Option<Rect>) {
+        let area = |(min, max): (DVec2, DVec2)| (max - min).element_product();
+        let boxes = wires.iter().map(Wire::bounds);
+        let Some((min, max)) = boxes.max_by(|&a, &b| area(a).total_cmp(&area(b))) else {
+            return (Self::default(), None);
+        };
+        let mut moved = None;
+        let mut pieces = Vec::new();
+        for wire in wires {
+            let (a, b) = wire.bounds();
+            let by = DVec2::new(
+                periods_off([min.x, max.x], [a.x, b.x], periods[0]),
+                periods_off([min.y, max.y], [a.y, b.y], periods[1]),
+            );
+            if by == DVec2::ZERO {
+                pieces.extend(wire.0);
+            } else {
+                moved = Some(Rect { u: [min.x, max.x], v: [min.y, max.y] });
+                pieces.extend(wire.moved(by).0);
+            }
+        }
+        (Self { pieces }, moved)
     }
 
     /// Whether the parameters lie inside. A face without wires has no trim: everything is inside.

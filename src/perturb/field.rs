@@ -58,6 +58,7 @@ impl<'a> Field<'a> {
         wall: &'a [WallFace],
         displacement: &'a [DVec3],
         seeds: &[bool],
+        inherited: &[f64],
     ) -> Field<'a> {
         let (mesh, linear_nodes) = (&elevated.mesh, elevated.linear_nodes);
         let (starts, around) = faces_around(wall, linear_nodes);
@@ -65,7 +66,10 @@ impl<'a> Field<'a> {
         let points = &mesh.points[..];
         let boxes: Vec<Aabb> =
             wall.iter().map(|f| Aabb::of_points(f.corners().iter().map(|n| points[n.index()]))).collect();
-        let reach = reaches(wall, displacement, &mesh.points, linear_nodes);
+        let mut reach = reaches(wall, displacement, &mesh.points, linear_nodes);
+        for (own, &inherited) in reach.iter_mut().zip(inherited) {
+            *own = own.max(inherited);
+        }
         Field {
             reach,
             order: mesh.order,
@@ -77,6 +81,11 @@ impl<'a> Field<'a> {
             around,
             tree: BoxTree::new(&boxes),
         }
+    }
+
+    /// For every linear node the reach at its root: a plane that is carried by a wall carries the volume as far as the wall does.
+    pub(super) fn reach_of_roots(&self) -> Vec<f64> {
+        self.roots.iter().map(|root| root.map_or(0.0, |root| self.reach[root as usize])).collect()
     }
 
     /// The displacement at the combination `weights` of linear nodes.

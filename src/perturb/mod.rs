@@ -73,7 +73,8 @@ pub fn perturb(
     let mut seeds = vec![false; linear];
     wall.iter().flat_map(WallFace::corners).for_each(|n| seeds[n.index()] = true);
     let in_plane = |n: usize| n >= linear && planar(hosts[n]);
-    let field = Field::new(elevated, &wall, &displacement, &seeds);
+    let field = Field::new(elevated, &wall, &displacement, &seeds, &[]);
+    let reach = field.reach_of_roots();
     let mut carried = carry(&field, elevated, &displacement, in_plane);
     for (n, d) in carried.iter_mut().enumerate().skip(linear) {
         if let Some(plane) = association.plane_of(hosts[n]) {
@@ -87,7 +88,7 @@ pub fn perturb(
     for (seed, own) in seeds.iter_mut().zip(own_wall) {
         *seed |= own;
     }
-    let field = Field::new(elevated, &wall, &displacement, &seeds);
+    let field = Field::new(elevated, &wall, &displacement, &seeds, &reach);
     let displacement = carry(&field, elevated, &displacement, |n| hosts[n] == Host::Free);
     sum(elevated, association, hosts, &displacement)
 }

@@ -1,5 +1,6 @@
 #include "import.hxx"
 #include "guard.hxx"
+#include "instances.hxx"
 #include "opencascade-sys/src/lib.rs.h"
 
 #include <BRepBuilderAPI_Transform.hxx>
@@ -11,6 +12,8 @@
 #include <IGESData_GlobalSection.hxx>
 #include <IGESData_IGESEntity.hxx>
 #include <IGESData_IGESModel.hxx>
+#include <Interface_Check.hxx>
+#include <Interface_CheckIterator.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
@@ -19,6 +22,7 @@
 #include <STEPControl_Controller.hxx>
 #include <STEPControl_Reader.hxx>
 #include <StepData_StepModel.hxx>
+#include <StepRepr_NextAssemblyUsageOccurrence.hxx>
 #include <StepRepr_GlobalUnitAssignedContext.hxx>
 #include <StepRepr_RepresentationItem.hxx>
 #include <StepShape_FaceSurface.hxx>
@@ -31,6 +35,7 @@
 #include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
 #include <cctype>
+#include <iostream>
 #include <map>
 #include <set>
 #include <sstream>
@@ -68,7 +73,7 @@ void remember(Origins& origins, const TopoDS_Shape& shape, Origin origin) {
   if (!fresh && origin.rank < it->second.rank) it->second = origin;
 }
 
-rust::Vec<Label> labels_of(const Shape& shape, const Origins& origins) {
+rust::Vec<Label> labels_of(const Shape& shape, const Origins& origins, const Paths& paths) {
   rust::Vec<Label> labels;
   const std::pair<int, const TopTools_IndexedMapOfShape*> kinds[] = {{0, &shape.faces()}, {1, &shape.edges()}, {2, &shape.vertices()}};
   for (const auto& [kind, map] : kinds)
@@ -78,7 +83,8 @@ rust::Vec<Label> labels_of(const Shape& shape, const Origins& origins) {
       Label label{};
       label.kind = uint8_t(kind);
       label.index = uint32_t(i - 1);
-      label.reference = lossy(it->second.reference);
+      const std::string* path = paths.Seek((*map)(i));
+      label.reference = lossy(it->second.reference + (path ? "@" + *path : ""));
       label.name = lossy(it->second.name);
       labels.push_back(label);
     }
@@ -114,8 +120,9 @@ struct Source {
   std::string unit = "unknown";
   double millimetres = 1;
   Origins origins;
+  std::vector<Instance> instances;
   std::vector<std::tuple<TopoDS_Shape, std::string, std::string>> groups;
-  rust::Vec<rust::String> dropped;
+  rust::Vec<rust::String> dropped, warnings;
 };
 
 void check_status(IFSelect_ReturnStatus status) {
@@ -157,6 +164,30 @@ void read_step_unit(const Handle(StepData_StepModel)& model, STEPControl_Reader&
   if (source.millimetres <= 0) throw std::runtime_error("unknown unit of length: " + source.unit);
 }
 
+// Warns of an entity before it is transferred, on the error stream too: should OCCT crash on it, the parent still learns of it.
+void warn(Source& source, const std::string& reference, const std::string& cause) {
+  const std::string text = reference + ": " + cause;
+  if (source.warnings.size() < 100) std::cerr << "sagitta-warning " << text << std::endl;
+  source.warnings.push_back(lossy(text));
+}
+
+// What OCCT's own check of the model calls a failure.
+template <class Reader, class Name> void warn_of_fails(Reader& reader, Source& source, Name name) {
+  Interface_CheckIterator checks = reader.WS()->ModelCheckList(Standard_True);
+  for (checks.Start(); checks.More(); checks.Next()) {
+    const Handle(Interface_Check) check = checks.Value();
+    if (check.IsNull() || !check->HasFailed()) continue;
+    const Handle(Standard_Transient) entity = checks.Number() > 0 ? reader.WS()->Model()->Value(checks.Number()) : Handle(Standard_Transient)();
+    warn(source, entity.IsNull() ? "the file" : name(entity), check->CFail(1));
+  }
+}
+
+// The identifier of a usage in an assembly, else its number in the file.
+std::string instance_name(const Handle(StepData_StepModel)& model, const Handle(StepRepr_NextAssemblyUsageOccurrence)& usage) {
+  const std::string id = text_of(usage->Id());
+  return id.empty() ? "#" + std::to_string(model->IdentLabel(usage)) : id;
+}
+
 void read_step(const std::string& path, Source& source) {
   STEPControl_Controller::Init();
   STEPControl_Reader reader;
@@ -164,8 +195,9 @@ void read_step(const std::string& path, Source& source) {
   check_status(reader.ReadFile(path.c_str()));
   Handle(StepData_StepModel) model = Handle(StepData_StepModel)::DownCast(reader.WS()->Model());
   for (int i = 1; i <= model->NbEntities(); i++)
-    if (model->IsErrorEntity(i))
-      source.dropped.push_back(lossy(step_id(model, model->Value(i)) + " has errors: " + model->Value(i)->DynamicType()->Name()));
+    if (model->IsErrorEntity(i) || model->IsRedefinedContent(i))
+      warn(source, step_id(model, model->Value(i)), std::string("malformed ") + model->Value(i)->DynamicType()->Name());
+  warn_of_fails(reader, source, [&](const Handle(Standard_Transient)& entity) { return step_id(model, entity); });
   reader.TransferRoots();
   source.shape = reader.OneShape();
   read_step_unit(model, reader, source);
@@ -179,6 +211,8 @@ void read_step(const std::string& path, Source& source) {
       if (entity->IsKind(STANDARD_TYPE(StepShape_FaceSurface))) source.dropped.push_back(lossy(step_id(model, entity)));
       continue;
     }
+    auto usage = Handle(StepRepr_NextAssemblyUsageOccurrence)::DownCast(entity);
+    if (!usage.IsNull()) source.instances.push_back({shape, instance_name(model, usage)});
     if (!item.IsNull()) remember(source.origins, shape, {step_id(model, entity), text_of(item->Name()), 0});
   }
 }
@@ -202,6 +236,9 @@ void read_iges(const std::string& path, Source& source) {
   Interface_Static::SetCVal("xstep.cascade.unit", "MM");
   check_status(reader.ReadFile(path.c_str()));
   Handle(IGESData_IGESModel) model = Handle(IGESData_IGESModel)::DownCast(reader.WS()->Model());
+  warn_of_fails(reader, source, [&](const Handle(Standard_Transient)& entity) {
+    return "iges:D" + std::to_string(model->DNum(Handle(IGESData_IGESEntity)::DownCast(entity)));
+  });
   reader.TransferRoots();
   if (reader.NbShapes() == 0) throw std::runtime_error("the file holds no shape (truncated or empty?)");
   source.shape = reader.OneShape();
@@ -231,8 +268,9 @@ void read_brep(const std::string& path, Source& source) {
 
 } // namespace
 
-Import::Import(std::unique_ptr<Shape> shape, std::string unit, double scale, rust::Vec<Label> labels, rust::Vec<rust::String> dropped)
-    : shape_(std::move(shape)), unit_(std::move(unit)), millimetres_(scale), labels_(std::move(labels)), dropped_(std::move(dropped)) {}
+Import::Import(std::unique_ptr<Shape> shape, std::string unit, double scale, rust::Vec<Label> labels, rust::Vec<rust::String> dropped,
+               rust::Vec<rust::String> warnings)
+    : shape_(std::move(shape)), unit_(std::move(unit)), millimetres_(scale), labels_(std::move(labels)), dropped_(std::move(dropped)), warnings_(std::move(warnings)) {}
 
 rust::Vec<Label> Import::labels() const { return labels_; }
 
@@ -246,12 +284,12 @@ std::unique_ptr<Import> read_file(rust::Str name, Format format, double scale) {
     else read_brep(path, source);
     if (source.shape.IsNull()) throw std::runtime_error("no shape came out of it");
     const Shape read(source.shape);
-    rust::Vec<Label> labels = labels_of(read, source.origins);
+    rust::Vec<Label> labels = labels_of(read, source.origins, paths_of(source.shape, source.instances));
     for (const auto& [shape, reference, title] : source.groups) add_group(labels, read, shape, reference, title);
     auto scaled = std::make_unique<Shape>(scaled_by(source.shape, scale / source.millimetres));
     if (scaled->face_count() != read.face_count() || scaled->edge_count() != read.edge_count())
       throw std::runtime_error("scaling to the unit of the file changed the topology");
-    return std::make_unique<Import>(std::move(scaled), source.unit, source.millimetres, std::move(labels), std::move(source.dropped));
+    return std::make_unique<Import>(std::move(scaled), source.unit, source.millimetres, std::move(labels), std::move(source.dropped), std::move(source.warnings));
   });
 }
 

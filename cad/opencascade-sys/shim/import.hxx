@@ -10,19 +10,21 @@ struct Label;
 
 class Import {
 public:
-  Import(std::unique_ptr<Shape> shape, std::string unit, double scale, rust::Vec<Label> labels, rust::Vec<rust::String> notes);
+  Import(std::unique_ptr<Shape> shape, std::string unit, double scale, rust::Vec<Label> labels, rust::Vec<rust::String> dropped,
+         rust::Vec<rust::String> warnings);
   const Shape& shape() const { return *shape_; }
   rust::String unit() const { return unit_; }
   double millimetres_per_unit() const { return millimetres_; }
   rust::Vec<Label> labels() const;
   rust::Vec<rust::String> dropped() const { return dropped_; }
+  rust::Vec<rust::String> warnings() const { return warnings_; }
 
 private:
   std::unique_ptr<Shape> shape_;
   std::string unit_;
   double millimetres_;
   rust::Vec<Label> labels_;
-  rust::Vec<rust::String> dropped_;
+  rust::Vec<rust::String> dropped_, warnings_;
 };
 
 // Coordinates come in the unit of the file times `scale`.

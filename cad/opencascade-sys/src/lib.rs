@@ -111,6 +111,7 @@ mod ffi {
 
     unsafe extern "C++" {
         include!("import.hxx");
+        include!("oracle.hxx");
 
         type Surface;
         type Curve;
@@ -118,6 +119,7 @@ mod ffi {
         type Loops;
         type Shape;
         type Import;
+        type Oracle;
 
         fn d2(self: &Surface, u: f64, v: f64, jet: &mut [f64; 18]) -> Result<()>;
         fn form(self: &Surface) -> Result<Form>;
@@ -156,13 +158,21 @@ mod ffi {
         fn millimetres_per_unit(self: &Import) -> f64;
         fn labels(self: &Import) -> Vec<Label>;
         fn dropped(self: &Import) -> Vec<String>;
+        /// What OCCT's checks say of entities; written to standard error as well, before OCCT goes on to use them.
+        fn warnings(self: &Import) -> Vec<String>;
+
+        /// OCCT's own searches on a face, for tests and benchmarks: `found` is u, v, distance; the point of `extrema`.
+        fn oracle(shape: &Shape, face: usize) -> Result<UniquePtr<Oracle>>;
+        fn project(self: Pin<&mut Oracle>, x: f64, y: f64, z: f64, found: &mut [f64; 3]) -> Result<bool>;
+        fn analyse(self: Pin<&mut Oracle>, x: f64, y: f64, z: f64, found: &mut [f64; 3]) -> Result<()>;
+        fn extrema(self: &Oracle, x: f64, y: f64, z: f64, found: &mut [f64; 3]) -> Result<f64>;
     }
 }
 
 pub use cxx::{Exception, UniquePtr};
 pub use ffi::{
-    Coedge, Curve, EdgeData, FaceData, Form, Format, Import, Kind, Label, Loops, Pcurve, Shape, Spans, Surface,
-    VertexData, read_file, shape_from_bytes,
+    Coedge, Curve, EdgeData, FaceData, Form, Format, Import, Kind, Label, Loops, Oracle, Pcurve, Shape, Spans, Surface,
+    VertexData, oracle, read_file, shape_from_bytes,
 };
 
 // SAFETY (the three types below): each holds one `Handle(Geom_*)` or `Handle(Geom2d_*)` that is never replaced or edited after

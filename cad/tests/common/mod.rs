@@ -33,3 +33,11 @@ impl Random {
         min + (max - min) * DVec3::new(self.unit(), self.unit(), self.unit())
     }
 }
+
+pub fn shape_path(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/shapes").join(name)
+}
+
+pub fn shape(name: &str) -> Model {
+    Model::read(&shape_path(name), &options()).unwrap()
+}

@@ -1,0 +1,94 @@
+//! The report on what may be wrong with a model.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+mod common;
+
+use cad::{Kind, Model, ReadError};
+use common::{fixture, options, shape};
+
+#[test]
+fn good_models_are_healthy() {
+    for model in [fixture("weeble/weeble.step"), fixture("torus/torus.step"), shape("plate.brep")] {
+        let health = model.health();
+        let silent = [&health.dropped, &health.warnings].iter().all(|list| list.is_empty());
+        assert!(silent && health.trims.is_empty(), "{:?}: {health:?}", model.path());
+        assert!(health.open_edges.is_empty() && health.free_edges.is_empty(), "{:?}: {health:?}", model.path());
+        assert_eq!(health.faces.values().sum::<usize>(), model.faces().len());
+    }
+}
+
+#[test]
+fn open_and_free_edges_are_told() {
+    let unsewn = shape("unsewn.igs").health();
+    assert!(
+        unsewn.doubled_edges.len() > 10 && unsewn.open_edges.is_empty() && unsewn.free_edges.is_empty(),
+        "{unsewn:?}"
+    );
+    let curves = shape("curves.step").health();
+    assert_eq!((curves.free_edges.len(), curves.open_edges.len()), (3, 0));
+    assert_eq!(curves.edges.get(&Kind::Circle), Some(&1));
+}
+
+/// The corner of a box moved away by a millimetre: edges and surfaces no longer meet.
+#[test]
+fn moved_boundaries_are_told() {
+    let text = std::fs::read_to_string(common::shape_path("plate.brep")).unwrap();
+    let healthy = shape("plate.brep").health();
+    assert!(healthy.trims.is_empty());
+    // the first straight curve of the shape, moved sideways
+    let line = text.lines().position(|line| line.starts_with("Curves ")).unwrap() + 1;
+    let moved: Vec<String> = text
+        .lines()
+        .enumerate()
+        .map(|(i, l)| if i == line { l.replacen(" 0 0 0 ", " 0 0.5 0.5 ", 1) } else { l.to_owned() })
+        .collect();
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("moved.brep");
+    std::fs::write(&path, moved.join("\n")).unwrap();
+    let health = Model::read(&path, &options()).unwrap().health();
+    assert!(!health.trims.is_empty(), "{}", moved[line]);
+    assert!(health.trims[0].1.to_string().contains("away from the surface"), "{:?}", health.trims);
+}
+
+/// An entity that OCCT dies of is named in the error.
+#[test]
+fn a_crash_names_the_suspects() {
+    let text = std::fs::read_to_string(common::path("weeble/weeble.step")).unwrap();
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("dangling.step");
+    let at = text.find("CARTESIAN_POINT").unwrap();
+    let id: String = text[..at].rsplit('#').next().unwrap().chars().take_while(char::is_ascii_digit).collect();
+    std::fs::write(&path, text.replacen(&format!("#{id} = CARTESIAN_POINT("), "#987654 = CARTESIAN_POINT(", 1))
+        .unwrap();
+    match Model::read(&path, &options()) {
+        Err(error @ ReadError::Crashed { .. }) => assert!(error.to_string().contains("step:#"), "{error}"),
+        Err(error) => assert!(error.to_string().contains("dangling.step"), "{error}"),
+        Ok(model) => assert!(!model.warnings().is_empty(), "nothing was said"),
+    }
+}
+
+/// The same plate sewn (BREP) and in surface mode (IGES): as many edges between two faces, and at the same places.
+#[test]
+fn edges_between_unsewn_faces_resolve() {
+    let (sewn, unsewn) = (shape("plate.brep"), shape("unsewn.igs"));
+    assert_eq!(sewn.faces().len(), unsewn.faces().len());
+    let real = sewn.edges().iter().filter(|edge| edge.faces.len() == 2 || edge.seam);
+    assert_eq!(unsewn.sewing().merged.len(), real.count());
+    let mut pairs = 0;
+    for a in 1..=unsewn.faces().len() {
+        for b in a..=unsewn.faces().len() {
+            let Ok(edges) = unsewn.resolve(&format!("faces:{a}|{b}")) else { continue };
+            pairs += edges.len();
+            for id in edges {
+                let cad::EntityId::Edge(id) = id else { panic!("{id}") };
+                assert_eq!(unsewn.sewing().same_as(id).len(), 2);
+                let group = cad::Group::of_edges(&unsewn, &[id]).unwrap();
+                let twin = unsewn.edge(unsewn.sewing().same_as(id)[1]).unwrap();
+                let middle =
+                    group.evaluate(twin.id.into(), [0.5 * (twin.parameters[0] + twin.parameters[1]), 0.0]).unwrap();
+                assert!(group.closest(middle.point(), None).distance < 1e-6);
+            }
+        }
+    }
+    assert_eq!(pairs, unsewn.sewing().merged.len());
+}

@@ -1,0 +1,175 @@
+#!/usr/bin/env python3
+"""Makes the shapes of cad/tests with OCCT's Python binding (pip install cadquery-ocp-novtk, version 8.0): make_shapes.py [FOLDER]"""
+import math, os, sys
+from OCP.BRep import BRep_Builder, BRep_Tool
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+from OCP.BRepBuilderAPI import (BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeWire,
+                                BRepBuilderAPI_NurbsConvert)
+from OCP.BRepLib import BRepLib
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakeSphere
+from OCP.BRepTools import BRepTools
+from OCP.Geom import (Geom_BSplineCurve, Geom_BSplineSurface, Geom_BezierSurface, Geom_ConicalSurface,
+                      Geom_CylindricalSurface, Geom_OffsetSurface, Geom_SphericalSurface, Geom_SurfaceOfLinearExtrusion,
+                      Geom_SurfaceOfRevolution, Geom_ToroidalSurface)
+from OCP.Geom2d import Geom2d_Circle, Geom2d_Line, Geom2d_TrimmedCurve
+from OCP.IFSelect import IFSelect_RetDone
+from OCP.Interface import Interface_Static
+from OCP.STEPControl import STEPControl_AsIs, STEPControl_GeometricCurveSet, STEPControl_Writer
+from OCP.IGESControl import IGESControl_Writer
+from OCP.collections import Array1_double, Array1_gp_Pnt, Array1_int, Array2_gp_Pnt
+from OCP.TopExp import TopExp_Explorer
+from OCP.TopAbs import TopAbs_FACE
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS, TopoDS_Compound
+from OCP.gp import gp_Ax1, gp_Ax2, gp_Ax2d, gp_Ax3, gp_Circ, gp_Dir, gp_Dir2d, gp_Pnt, gp_Pnt2d, gp_Trsf, gp_Vec
+
+folder = sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__))
+
+
+def place(x):
+    """A tilted frame, so that nothing is aligned with the axes."""
+    return gp_Ax3(gp_Pnt(x, 0.3 * x, 1.0), gp_Dir(0.2, -0.3, 1.0), gp_Dir(1.0, 0.1, 0.0))
+
+
+def reals(values):
+    array = Array1_double(1, len(values))
+    for i, value in enumerate(values):
+        array.SetValue(i + 1, value)
+    return array
+
+
+def integers(values):
+    array = Array1_int(1, len(values))
+    for i, value in enumerate(values):
+        array.SetValue(i + 1, value)
+    return array
+
+
+def curve(points, degree=3):
+    poles = Array1_gp_Pnt(1, len(points))
+    for i, p in enumerate(points):
+        poles.SetValue(i + 1, gp_Pnt(*p))
+    spans = len(points) - degree
+    ends = [degree + 1] + [1] * (spans - 1) + [degree + 1]
+    return Geom_BSplineCurve(poles, reals(range(spans + 1)), integers(ends), degree)
+
+
+def grid(n, m, at):
+    poles = Array2_gp_Pnt(1, n, 1, m)
+    for i in range(n):
+        for j in range(m):
+            poles.SetValue(i + 1, j + 1, gp_Pnt(*at(i, j)))
+    return poles
+
+
+def spline(n, m, at, degree=3):
+    def side(k):
+        spans = k - degree
+        return reals(range(spans + 1)), integers([degree + 1] + [1] * (spans - 1) + [degree + 1])
+    (ku, mu), (kv, mv) = side(n), side(m)
+    return Geom_BSplineSurface(grid(n, m, at), ku, kv, mu, mv, degree, degree)
+
+
+def roof():
+    """A ridge: degree 2 with a knot of multiplicity 2."""
+    at = lambda i, j: (i, j, 1.5 - abs(i - 2) + 0.1 * (i == 1))
+    return Geom_BSplineSurface(grid(5, 3, at), reals([0, 1, 2]), reals([0, 1]), integers([3, 2, 3]), integers([3, 3]), 2, 2)
+
+
+def face(surface, *bounds):
+    return BRepBuilderAPI_MakeFace(surface, *bounds, 1e-7).Face() if bounds else BRepBuilderAPI_MakeFace(surface, 1e-7).Face()
+
+
+def loop(surface, curve2d):
+    edge = BRepBuilderAPI_MakeEdge(curve2d, surface).Edge()
+    BRepLib.BuildCurve3d_s(edge)
+    return BRepBuilderAPI_MakeWire(edge).Wire()
+
+
+def holed(base, u, v, radius):
+    """A face with a hole whose pcurve is a circle around u, v, wherever that is."""
+    surface = BRep_Tool.Surface_s(base)
+    circle = Geom2d_Circle(gp_Ax2d(gp_Pnt2d(u, v), gp_Dir2d(1, 0)), radius)
+    maker = BRepBuilderAPI_MakeFace(base)
+    maker.Add(TopoDS.Wire(loop(surface, circle).Reversed()))
+    return maker.Face()
+
+
+def box_with_hole():
+    box = BRepPrimAPI_MakeBox(gp_Pnt(0, 0, 0), 4, 3, 2).Shape()
+    drill = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(2, 1.5, -1), gp_Dir(0, 0.1, 1)), 0.7, 5).Shape()
+    return BRepAlgoAPI_Cut(box, drill).Shape()
+
+
+def compound(shapes):
+    builder, whole = BRep_Builder(), TopoDS_Compound()
+    builder.MakeCompound(whole)
+    for shape in shapes:
+        builder.Add(whole, shape)
+    return whole
+
+
+def kinds():
+    wave = lambda i, j: (0.8 * i, 0.7 * j, math.sin(0.9 * i) * math.cos(0.8 * j))
+    profile = [(0, 0, 0), (1, 1.2, 0), (2, -0.7, 0.2), (3, 0.4, 0), (4, 0, 0.5), (5, 1, 0)]
+    meridian = [(1, 0, 0), (2.2, 0, 1), (0.6, 0, 2), (1.5, 0, 3), (0.7, 0, 4)]
+    axis = gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1))
+    cylinder = Geom_CylindricalSurface(place(0), 1.3)
+    sphere = Geom_SphericalSurface(place(2), 1.7)
+    nurbs = BRepBuilderAPI_NurbsConvert(BRepPrimAPI_MakeSphere(gp_Ax2(gp_Pnt(1, 2, 3), gp_Dir(1, 1, 1)), 1.1).Shape()).Shape()
+    rational = TopExp_Explorer(nurbs, TopAbs_FACE).Current()
+    return [
+        face(sphere),                                                              # 1 whole sphere
+        face(sphere, 0.3, 2.5, -0.4, 1.1),                                         # 2 its patch
+        face(cylinder, 0, 2 * math.pi, -2, 3),                                     # 3 whole cylinder
+        face(Geom_ConicalSurface(place(-3), 0.4, 0.5), 0, 2 * math.pi, -0.5 / math.sin(0.4), 2),  # 4 cone with its apex
+        face(Geom_ToroidalSurface(place(5), 3, 0.8), 0, 2 * math.pi, 0, 2 * math.pi),             # 5 whole torus
+        face(Geom_SurfaceOfLinearExtrusion(curve(profile), gp_Dir(0.1, 0.2, 1)), 0, 3, -1, 2),    # 6 extrusion
+        face(Geom_SurfaceOfRevolution(curve(meridian), axis), 0, 4.5, 0, 2),       # 7 revolution
+        face(Geom_OffsetSurface(spline(7, 6, wave), 0.2), 0, 4, 0, 3),             # 8 offset
+        face(roof(), 0, 2, 0, 1),                                                  # 9 C0 kink
+        face(Geom_BezierSurface(grid(6, 5, wave)), 0, 1, 0, 1),                    # 10 Bezier, degrees 5 and 4
+        rational,                                                                  # 11 rational, with poles
+        holed(face(spline(7, 6, wave), 0, 4, 0, 3), 2, 1.5, 0.8),                  # 12 B-spline with a hole
+        holed(face(cylinder, 0, 2 * math.pi, -2, 3), 1.5 + 2 * math.pi, 0.5, 0.9), # 13 a hole a period away
+        face(Geom_OffsetSurface(cylinder, 0.4), 0, 2 * math.pi, -1, 1),            # 14 offset of a cylinder
+        face(spline(26, 24, lambda i, j: (0.2 * i, 0.2 * j, 0.1 * math.sin(i * j)), 7), 0, 19, 0, 17),  # 15 degree 7, rough
+    ]
+
+
+def step(name, shape, mode=STEPControl_AsIs, assembly=0):
+    writer = STEPControl_Writer()
+    Interface_Static.SetIVal_s("write.step.assembly", assembly)
+    writer.Transfer(shape, mode)
+    assert writer.Write(os.path.join(folder, name)) == IFSelect_RetDone
+    Interface_Static.SetIVal_s("write.step.assembly", 0)
+
+
+def moved(shape, x, angle):
+    trsf = gp_Trsf()
+    trsf.SetRotation(gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)), angle)
+    trsf.SetTranslationPart(gp_Vec(x, 0, 0))
+    return shape.Located(TopLoc_Location(trsf))
+
+
+def unsewn(name):
+    writer = IGESControl_Writer("MM", 0)
+    writer.AddShape(box_with_hole())
+    writer.ComputeModel()
+    assert writer.Write(os.path.join(folder, name))
+
+
+def main():
+    BRepTools.Write_s(compound(kinds()), os.path.join(folder, "kinds.brep"))
+    BRepTools.Write_s(box_with_hole(), os.path.join(folder, "plate.brep"))
+    bracket = box_with_hole()
+    pair = compound([moved(bracket, 0, 0), moved(bracket, 6, 0.5)])
+    step("assembly.step", compound([pair, moved(pair, 20, 1.0)]), assembly=1)
+    circle = BRepBuilderAPI_MakeEdge(gp_Circ(gp_Ax2(gp_Pnt(0, 0, 1), gp_Dir(0, 1, 1)), 2.0), 0.2, 4.0).Edge()
+    free = BRepBuilderAPI_MakeEdge(curve([(0, 0, 0), (1, 2, 0), (3, -1, 1), (4, 0, 2), (6, 1, 0)])).Edge()
+    line = BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 0), gp_Pnt(1, 2, 3)).Edge()
+    step("curves.step", compound([circle, free, line]), STEPControl_GeometricCurveSet)
+    unsewn("unsewn.igs")
+
+
+main()
