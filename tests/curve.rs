@@ -77,12 +77,21 @@ impl Case {
         match python(lost) {
             None => self.our_check(&output),
             Some(python) => {
-                // Against the STEP file also where the IGES file served: Gmsh cannot elevate on the IGES file.
-                let mut arguments = args![linear, output, "--cad", fixture(self.name, "step")].to_vec();
-                arguments.extend((!self.judged).then(|| "--no-certify".into()));
-                self.judgement(&report, &script(&python, "judge.py", &arguments));
+                let mut judge = self.judge(&python, &output, self.cad, self.judged);
+                if self.cad != "step" {
+                    // Gmsh cannot elevate on IGES; the nodes belong on it all the same: it is 1e-7 off the STEP file.
+                    let key = "boundary_dist_baseline";
+                    judge[key] = self.judge(&python, &output, "step", false)[key].clone();
+                }
+                self.judgement(&report, &judge);
             }
         }
+    }
+
+    fn judge(&self, python: &Path, output: &Path, cad: &str, certify: bool) -> Value {
+        let mut arguments = args![fixture(self.name, "msh"), output, "--cad", fixture(self.name, cad)].to_vec();
+        arguments.extend((!certify).then(|| "--no-certify".into()));
+        script(python, "judge.py", &arguments)
     }
 
     #[track_caller]
@@ -95,7 +104,9 @@ impl Case {
             assert_eq!(cell["count"], cell["valid"], "{title}: {cell}");
             self.floors_hold([number(cell, "/c_wcn_min"), number(cell, "/c_jac_min")], "own report");
             let (proven, sampled) = (number(cell, "/certified_min"), number(cell, "/c_jac_min"));
-            assert!(proven > 0.0 && proven <= sampled.max(1.0), "{title}: J/Jc proven {proven}, sampled {sampled}");
+            let told = format!("{title}: {}: J/Jc proven {proven}, C_JAC sampled {sampled}", cell["cell"]);
+            // C_JAC is capped at 1; below that, no sample lies under what is proven.
+            assert!(proven > 0.0 && (sampled >= 1.0 || proven <= sampled + 1e-12), "{told}");
         }
     }
 
