@@ -15,6 +15,7 @@ mod bind;
 mod boundary;
 mod claims;
 mod error;
+mod fit;
 mod linkage;
 
 use glam::DVec3;
