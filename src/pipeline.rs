@@ -252,7 +252,12 @@ fn tie(job: &Job, linear: &Mesh, boundary: &Boundary, model: Model) -> Result<(T
             None => Claims::by_tags(linear, boundary, model),
         };
         let tied = associate::associate(linear, boundary, model, &claims, job.max_offset);
-        tied.map_err(|cause| refused(&job.mesh, &job.cad, cause))
+        let mut tied = tied.map_err(|cause| refused(&job.mesh, &job.cad, cause))?;
+        if let (Some(path), false) = (&job.linkage, claims.trusted) {
+            let note = "names another CAD file; its numbers were held against this one";
+            tied.notes.push(format!("{} {note}", path.display()));
+        }
+        Ok(tied)
     };
     let first = attempt(&model);
     if let (None, Err(PipelineError::Associate { cause, .. })) = (job.cad_scale, &first)

@@ -69,7 +69,7 @@ impl Binder<'_> {
         self.result.faces = vec![Host::Straight; self.boundary.faces.len()];
         let mut linked = vec![false; self.boundary.faces.len()];
         for sheet in claims.sheets.iter().filter(|s| !s.entities.is_empty()) {
-            let host = Host::Surface(self.surface(sheet)?);
+            let host = Host::Surface(self.surface(sheet, claims.trusted)?);
             for &face in &sheet.items {
                 self.result.faces[face] = host;
                 linked[face] = true;
@@ -91,7 +91,7 @@ impl Binder<'_> {
     }
 
     /// The surface of a sheet, its points held against it.
-    fn surface(&mut self, sheet: &Claimed<usize>) -> Result<usize, AssociateError> {
+    fn surface(&mut self, sheet: &Claimed<usize>, trusted: bool) -> Result<usize, AssociateError> {
         let mut entities = sheet.entities.clone();
         entities.sort_unstable();
         entities.dedup();
@@ -109,10 +109,25 @@ impl Binder<'_> {
         };
         let nodes: BTreeSet<NodeId> =
             sheet.items.iter().flat_map(|&f| self.boundary.corners[f].iter().copied()).collect();
-        let farthest = self.held(&self.result.surfaces[index].group, &sheet.label, &entities, nodes)?;
+        let farthest = self.held(&self.result.surfaces[index].group, &sheet.label, &entities, &nodes)?;
+        let off = farthest > ON_ENTITY * self.model.diagonal();
+        if let Some(other) = (off && !trusted).then(|| self.face_that_holds(&nodes)).flatten() {
+            let (label, entities) = (sheet.label.clone(), names(&entities));
+            return Err(AssociateError::Elsewhere { label, entities, other: other.to_string() });
+        }
         // Noise that the surfaces show must be granted to the edges too.
         self.slack = self.slack.max(4.0 * farthest);
         Ok(index)
+    }
+
+    /// The first CAD face that all the nodes lie on.
+    fn face_that_holds(&self, nodes: &BTreeSet<NodeId>) -> Option<FaceId> {
+        let on = |group: &Group, n: &NodeId| {
+            group.closest(self.mesh.points[n.index()], None).distance <= ON_ENTITY * self.model.diagonal()
+        };
+        let holds =
+            |id: &FaceId| Group::of_faces(self.model, &[*id]).is_ok_and(|group| nodes.iter().all(|n| on(&group, n)));
+        self.model.faces().iter().map(|face| face.id).find(holds)
     }
 
     /// The largest distance of the nodes to a group.
@@ -121,9 +136,9 @@ impl Binder<'_> {
         group: &Group,
         label: &str,
         entities: &[EntityId],
-        nodes: BTreeSet<NodeId>,
+        nodes: &BTreeSet<NodeId>,
     ) -> Result<f64, AssociateError> {
-        let nodes: Vec<NodeId> = nodes.into_iter().collect();
+        let nodes: Vec<NodeId> = nodes.iter().copied().collect();
         let places: Vec<DVec3> = nodes.iter().map(|n| self.mesh.points[n.index()]).collect();
         let feet = group.closest_batch(&places, &[]);
         let off = feet.iter().filter(|f| f.distance > self.limit).count();
@@ -230,7 +245,7 @@ impl Binder<'_> {
                     return Ok(Some(self.curve(ids, &string.label, group)));
                 }
                 if trusted {
-                    self.held(&group, &string.label, &string.entities, nodes)?;
+                    self.held(&group, &string.label, &string.entities, &nodes)?;
                     return Ok(Some(self.curve(ids, &string.label, group)));
                 }
             }

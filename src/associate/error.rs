@@ -25,6 +25,12 @@ pub enum AssociateError {
          raise --max-offset if the mesh is this far off its CAD"
     )]
     Off { label: String, entities: String, count: usize, node: u64, at: DVec3, distance: f64, limit: f64 },
+    /// A tag that is another entity's number on this CAD.
+    #[error(
+        "{label} is tied to {entities}, which its points are near to but not on; they lie on {other}: the numbers belong to \
+         another CAD file; give a linkage file"
+    )]
+    Elsewhere { label: String, entities: String, other: String },
     /// An edge between two surfaces with no CAD edge.
     #[error(
         "the mesh edge {a}-{b} lies between {first} and {second}, but no CAD edge of theirs holds it: tie it to a curve \

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use cad::{Aabb, Model, ReadOptions};
+use cad::{Aabb, Health, Kind as EntityKind, Model, ReadOptions};
 use clap::Args;
 
 use super::{DONE, Failure, print};
@@ -99,16 +99,15 @@ fn linkage(path: &Path) -> Result<String, Failure> {
 }
 
 fn model(model: &Model) -> Result<String, Failure> {
-    let (faces, edges, vertices) = (model.faces(), model.edges(), model.vertices());
+    let (faces, edges) = (model.faces(), model.edges());
     let unit = model.unit();
     let metres = unit.metres.map_or_else(|| "unknown".to_owned(), |m| format!("{m} m"));
     let mut text = format!("{}, unit {} ({metres})\n", model.format(), unit.name);
     writeln!(text, "  {}", bounds(model.bounds()))?;
-    writeln!(text, "  {} faces, {} edges, {} vertices", faces.len(), edges.len(), vertices.len())?;
-    let mut kinds: BTreeMap<_, usize> = BTreeMap::new();
-    faces.iter().for_each(|face| *kinds.entry(face.kind).or_default() += 1);
-    let kinds: Vec<String> = kinds.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
-    writeln!(text, "  faces by kind: {}", kinds.join(", "))?;
+    let health = model.health();
+    writeln!(text, "  {} faces: {}", faces.len(), by_kind(&health.faces))?;
+    writeln!(text, "  {} edges: {}", edges.len(), by_kind(&health.edges))?;
+    writeln!(text, "  {} vertices", health.vertices)?;
     for face in faces {
         let label = &face.label;
         writeln!(text, "  {} {} {} {:?}", face.id, face.kind, label.reference, label.name)?;
@@ -117,8 +116,39 @@ fn model(model: &Model) -> Result<String, Failure> {
         let members: Vec<String> = group.faces.iter().map(ToString::to_string).collect();
         writeln!(text, "  group {:?}: {}", group.name, members.join(", "))?;
     }
-    for dropped in model.dropped() {
+    flaws(&mut text, &health)?;
+    Ok(text)
+}
+
+fn by_kind(counts: &BTreeMap<EntityKind, usize>) -> String {
+    let counts: Vec<String> = counts.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
+    counts.join(", ")
+}
+
+/// What may spoil a projection.
+fn flaws(text: &mut String, health: &Health) -> std::fmt::Result {
+    let list = |items: &mut dyn Iterator<Item = String>| items.collect::<Vec<_>>().join(", ");
+    let mut entities = |what: &str, ids: &[cad::EdgeId]| match ids {
+        [] => Ok(()),
+        _ => writeln!(text, "  {what}: {}", list(&mut ids.iter().map(ToString::to_string))),
+    };
+    entities("open edges", &health.open_edges)?;
+    entities("free edges", &health.free_edges)?;
+    entities("tiny edges", &health.tiny_edges)?;
+    for doubled in &health.doubled_edges {
+        writeln!(text, "  one edge in several pieces: {}", list(&mut doubled.iter().map(ToString::to_string)))?;
+    }
+    for face in &health.tiny_faces {
+        writeln!(text, "  tiny face: {face}")?;
+    }
+    for (face, fault) in &health.trims {
+        writeln!(text, "  boundary of {face}: {fault}")?;
+    }
+    for dropped in &health.dropped {
         writeln!(text, "  dropped by the reader: {dropped}")?;
     }
-    Ok(text)
+    for warning in &health.warnings {
+        writeln!(text, "  warning: {warning}")?;
+    }
+    Ok(())
 }
