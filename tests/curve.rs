@@ -58,7 +58,7 @@ impl Case {
 
     /// Runs it and holds it against what was promised.
     #[track_caller]
-    fn is_good(self) {
+    fn is_good(&self) {
         let dir = tempfile::tempdir().unwrap();
         let [output, report] = ["out.msh", "report.json"].map(|name| dir.path().join(name));
         let (linear, cad) = (fixture(self.name, "msh"), fixture(self.name, self.cad));
