@@ -121,6 +121,8 @@ pub enum PipelineError {
     TooMany { mesh: PathBuf, cause: TooMany },
     #[error("{mesh}: has no volume elements (tets, pyramids, prisms, hexes): nothing to curve", mesh = mesh.display())]
     NoVolume { mesh: PathBuf },
+    #[error("{cad}: has no faces: nothing to curve onto", cad = cad.display())]
+    NoFaces { cad: PathBuf },
     #[error("{mesh}: is of order {order} already; give the linear mesh", mesh = mesh.display())]
     NotLinear { mesh: PathBuf, order: Order },
     #[error(
@@ -168,6 +170,9 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
     clock.step(Step::Read);
     let linear = read_linear(&job.mesh)?;
     let model = Model::read(&job.cad, &scaled(job, job.cad_scale.unwrap_or(1.0)))?;
+    if model.faces().is_empty() {
+        return Err(PipelineError::NoFaces { cad: job.cad.clone() });
+    }
 
     clock.step(Step::Associate);
     let boundary = Boundary::new(&linear);
@@ -194,7 +199,7 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
         job.freeze_walls,
         job.freeze_linear,
     );
-    let smoothed =
+    let mut smoothed =
         smooth(&problem, &constraint, &job.smoothing, &mut places, |progress| clock.observer.progress(&progress));
     elevated.mesh.points = places;
 
@@ -202,6 +207,9 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
     let Elevated { mut mesh, linear_nodes, .. } = elevated;
     let first = certify::mesh(&mesh, Some(&straight[..linear_nodes]), &certify::Settings::default());
     let (given_up, certificate) = retreat(&mut mesh, &straight, linear_nodes, &boundary, &association, first);
+    if !given_up.is_empty() {
+        smoothed.survey(&Problem::new(&mesh, &straight), &mesh.points, job.smoothing.survey_factor);
+    }
     Ok(Curved {
         mesh,
         straight,

@@ -2,7 +2,7 @@
 
 use crate::model::SourceFormat;
 use std::fs::File;
-use std::io::{self, Read};
+use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
 /// Bytes that are looked at.
@@ -43,6 +43,24 @@ fn is_iges(head: &[u8]) -> bool {
             && matches!(line[72], b'S' | b'C')
             && line[73..].iter().all(|b| b.is_ascii_digit() || *b == b' ')
     })
+}
+
+/// Bytes at the end of a file among which an IGES file's last line must be.
+const TAIL: i64 = 4096;
+
+/// Whether an IGES file has its terminate section (`T` in column 73 of the last line): OCCT reads what is there of a file that
+/// was cut short, and says nothing.
+///
+/// # Errors
+/// The file cannot be opened or read.
+pub(crate) fn iges_is_whole(path: &Path) -> io::Result<bool> {
+    let mut file = File::open(path)?;
+    let length = file.metadata()?.len() as i64;
+    file.seek(SeekFrom::End(-length.min(TAIL)))?;
+    let mut tail = Vec::new();
+    file.read_to_end(&mut tail)?;
+    let last = tail.trim_ascii_end().rsplit(|&b| b == b'\n').next().unwrap_or_default();
+    Ok(last.len() > 72 && last[72] == b'T')
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Reading a CAD file: in a child process, because malformed files make OCCT crash or hang.
 
 use crate::assemble;
-use crate::model::Model;
+use crate::model::{Model, SourceFormat};
 use crate::payload::{self, Answer};
 use crate::reader::{MEMORY_VARIABLE, READER_SUBCOMMAND, SCALE_VARIABLE, WARNING_PREFIX};
 use opencascade_sys as sys;
@@ -128,6 +128,10 @@ impl Model {
         match crate::format::detect(path) {
             Err(source) => return Err(ReadError::Open { path: owned(), source }),
             Ok(None) => return Err(ReadError::Format { path: owned() }),
+            Ok(Some(SourceFormat::Iges)) if !crate::format::iges_is_whole(path).unwrap_or(true) => {
+                let cause = "the file is cut short: its terminate section is missing".to_owned();
+                return Err(ReadError::Refused { path: owned(), cause });
+            }
             Ok(Some(_)) => {}
         }
         if !(options.scale.is_finite() && options.scale > 0.0) {

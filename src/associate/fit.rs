@@ -40,8 +40,10 @@ pub(super) fn check_boxes(
     let ratio = size / cad;
     if !(1.0 / SAME_SIZE..=SAME_SIZE).contains(&ratio) {
         let near = |factor: &f64| (ratio / factor).ln().abs() < 0.1;
-        let factor = UNITS.into_iter().flat_map(|u| [u, 1.0 / u]).find(|f| near(f)).unwrap_or(ratio);
-        return Err(AssociateError::Scale { mesh: size, cad, factor });
+        return Err(match UNITS.into_iter().flat_map(|u| [u, 1.0 / u]).find(near) {
+            Some(factor) => AssociateError::Scale { mesh: size, cad, factor },
+            None => AssociateError::Size { mesh: size, cad },
+        });
     }
     let distance = own.center().distance(theirs.center());
     if distance > 0.5 * size {

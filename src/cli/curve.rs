@@ -139,6 +139,9 @@ impl Options {
 /// Curves a mesh, writes it, and tells how it went.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     formats::check_output(&options.output)?;
+    if let Some(report) = &options.report {
+        formats::check_folder(report)?;
+    }
     if let Some(threads) = options.threads {
         rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global()?;
     }

@@ -90,6 +90,14 @@ pub fn check_output(path: &Path) -> Result<(), Error> {
     if !known {
         return Err(Error::Format { file: path.to_path_buf(), reason: UNKNOWN_NAME.into() });
     }
+    check_folder(path)
+}
+
+/// Whether the folder of a file that is to be written exists.
+///
+/// # Errors
+/// [`Error::Io`].
+pub fn check_folder(path: &Path) -> Result<(), Error> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match std::fs::metadata(folder) {
         Ok(metadata) if metadata.is_dir() => Ok(()),

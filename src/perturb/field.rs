@@ -41,6 +41,8 @@ pub(super) struct Field<'a> {
     /// Wall faces around each wall vertex, by node: ranges of `around`.
     starts: Vec<u32>,
     around: Vec<u32>,
+    /// Faces that closest points are sought on: those all of whose corners are roots.
+    sought: Vec<u32>,
     tree: BoxTree,
 }
 
@@ -64,8 +66,10 @@ impl<'a> Field<'a> {
         let (starts, around) = faces_around(wall, linear_nodes);
         let roots = roots(elevated, seeds);
         let points = &mesh.points[..];
-        let boxes: Vec<Aabb> =
-            wall.iter().map(|f| Aabb::of_points(f.corners().iter().map(|n| points[n.index()]))).collect();
+        let sought: Vec<u32> =
+            (0..wall.len() as u32).filter(|&f| wall[f as usize].corners().iter().all(|n| seeds[n.index()])).collect();
+        let bounds = |&f: &u32| Aabb::of_points(wall[f as usize].corners().iter().map(|n| points[n.index()]));
+        let boxes: Vec<Aabb> = sought.iter().map(bounds).collect();
         let mut reach = reaches(wall, displacement, &mesh.points, linear_nodes);
         for (own, &inherited) in reach.iter_mut().zip(inherited) {
             *own = own.max(inherited);
@@ -79,6 +83,7 @@ impl<'a> Field<'a> {
             roots,
             starts,
             around,
+            sought,
             tree: BoxTree::new(&boxes),
         }
     }
@@ -135,9 +140,12 @@ impl<'a> Field<'a> {
     /// The closest point of the linear wall.
     fn closest(&self, x: DVec3) -> Option<Foot> {
         let nearest = |face: usize| closest_on_face(&self.wall[face], self.points, x);
-        let found = self.tree.nearest(x, f64::INFINITY, |face| Some(nearest(face).1.distance_squared(x)))?;
-        let (at, place) = nearest(found.leaf);
-        Some(Foot { face: found.leaf, at, place })
+        let found = self
+            .tree
+            .nearest(x, f64::INFINITY, |leaf| Some(nearest(self.sought[leaf] as usize).1.distance_squared(x)))?;
+        let face = self.sought[found.leaf] as usize;
+        let (at, place) = nearest(face);
+        Some(Foot { face, at, place })
     }
 }
 

@@ -94,6 +94,15 @@ pub struct Summary {
     pub inverted: usize,
 }
 
+impl Smoothed {
+    /// Takes the costs anew, after nodes were moved by others.
+    pub fn survey(&mut self, problem: &Problem, x: &[DVec3], survey_factor: usize) {
+        let all: Vec<usize> = (0..problem.element_count()).collect();
+        self.costs = problem.costs(&Kernels::new(problem, problem.order.get() * survey_factor), x, &all);
+        self.end = Summary::of(&self.costs);
+    }
+}
+
 impl Summary {
     fn of(costs: &[ElementCost]) -> Summary {
         let worst = |f: fn(&ElementCost) -> f64| costs.iter().map(f).fold(1.0, f64::min);
