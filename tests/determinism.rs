@@ -99,6 +99,6 @@ fn torus_p3_as_msh() {
 }
 
 #[test]
-fn cylinder_bl_p2_as_vtu() {
-    same_on_any_threads("cylinder_bl", "2", "vtu");
+fn sphere_shell_p2_as_vtu() {
+    same_on_any_threads("sphere_shell", "2", "vtu");
 }

@@ -150,7 +150,8 @@ fn distance(dir: &Path, cad: &str, n: usize, order: Order) -> f64 {
     off_the_sphere(&mesh)
 }
 
-/// Both observed orders reach `p + 0.8`, and the finest wall is as near as it was when this was written, with margin.
+/// The observed order between the last two levels reaches `p + 0.8`, that before it `p + 0.5` (the coarse walls are not yet
+/// asymptotic), and the finest wall is as near as it was when this was written, with margin.
 #[track_caller]
 fn order_is_reached(cad: &str, p: usize, levels: [usize; 3], last: f64) {
     let dir = tempfile::tempdir().unwrap();
@@ -160,7 +161,7 @@ fn order_is_reached(cad: &str, p: usize, levels: [usize; 3], last: f64) {
     let off = distances.map(|d| format!("{d:.2e}")).join(", ");
     let told = format!("{order} from {cad}, {levels:?} pieces a side: {off} off, orders {rates:.2?}");
     common::warn(&told);
-    assert!(rates.iter().all(|&rate| rate >= p as f64 + 0.8), "{told}");
+    assert!(rates[0] >= p as f64 + 0.5 && rates[1] >= p as f64 + 0.8, "{told}");
     // An order can also come from bad coarse meshes.
     assert!(distances[2] <= last, "{told}; at most {last:.2e} expected");
 }

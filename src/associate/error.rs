@@ -14,10 +14,10 @@ pub enum AssociateError {
     Scale { mesh: f64, cad: f64, factor: f64 },
     /// CAD and mesh differ in size, and by no factor between units.
     #[error(
-        "mesh and CAD differ in size, and by no factor between units: what is tied of the mesh is {mesh:.6} across, of the CAD \
-         {cad:.6}; they seem not to belong together (--cad-scale F takes any factor)"
+        "mesh and CAD differ in size by a factor near {factor:.6}, which is none between units: what is tied of the mesh is \
+         {mesh:.6} across, of the CAD {cad:.6}; they seem not to belong together (--cad-scale F takes any factor)"
     )]
-    Size { mesh: f64, cad: f64 },
+    Size { mesh: f64, cad: f64, factor: f64 },
     /// CAD and mesh lie apart.
     #[error(
         "mesh and CAD lie in different places: the boxes' centres are {distance:.6} apart, the mesh is {mesh:.6} across; \

@@ -42,7 +42,7 @@ pub(super) fn check_boxes(
         let near = |factor: &f64| (ratio / factor).ln().abs() < 0.1;
         return Err(match UNITS.into_iter().flat_map(|u| [u, 1.0 / u]).find(near) {
             Some(factor) => AssociateError::Scale { mesh: size, cad, factor },
-            None => AssociateError::Size { mesh: size, cad },
+            None => AssociateError::Size { mesh: size, cad, factor: ratio },
         });
     }
     let distance = own.center().distance(theirs.center());
