@@ -286,11 +286,11 @@ impl Run<'_, '_> {
     }
 
     /// Descends on a patch.
-    fn round(&mut self, stage: Stage, patch: &Patch, emphasis: f64, x: &mut [DVec3]) {
+    fn round(&mut self, stage: Stage, patch: &Patch, x: &mut [DVec3]) {
         let alpha = self.settings.alpha.unwrap_or_else(|| quality::alpha(self.problem.order));
         let delta = REGULARISATION * (LOW - self.lowest(stage)).max(0.0);
         let (shape, jacobian) = if stage == Stage::Shape { (1.0, 0.0) } else { (alpha, 1.0 - alpha) };
-        let weights = Weights { shape, jacobian, density: Density { emphasis, delta } };
+        let weights = Weights { shape, jacobian, density: Density { emphasis: EMPHASIS, delta } };
         let cuts = patch.elements.iter().map(|&e| self.costs[e].cut).collect();
         let kernels = patch.runs.iter().map(|run| self.surveys[usize::from(run.density)].of(run.cell)).collect();
         let anchored =
