@@ -2,7 +2,7 @@
 
 use crate::chart::{Jet, Rect, surface_d2};
 use crate::curve::curve_d2;
-use crate::foot::{End, Foot, Trace};
+use crate::foot::{Doubt, End, Foot, Trace};
 use crate::group::Member;
 use crate::ids::{EdgeId, EntityId, FaceId, VertexId};
 use crate::leaf::{EdgeGeometry, FaceGeometry, FaceLeaf, Side};
@@ -22,7 +22,10 @@ const SIDE_SAMPLES: usize = 128;
 impl Search<'_> {
     /// The winner, evaluated by OCCT.
     pub(crate) fn finish(self) -> Foot {
-        let Some(best) = self.best else { return self.nowhere() };
+        self.best.map_or_else(|| self.nowhere(), |best| self.finish_at(best))
+    }
+
+    fn finish_at(&self, best: Best) -> Foot {
         let geometry = &self.group.geometry;
         match self.group.members[best.member] {
             Member::Face { face, leaf } => {
@@ -31,6 +34,11 @@ impl Search<'_> {
                 let (parameters, jet) =
                     polish_surface(geometry, leaf_geometry, self.x, best.parameters, self.group.diagonal);
                 let end = self.end_on_face(geometry, leaf_geometry, parameters, &jet);
+                // where a surface ends at a knot or seam there is an edge as a rule, as near as the surface
+                let rim = self.rim.filter(|rim| end != End::Interior && rim.distance <= best.distance + self.tie());
+                if let Some(rim) = rim {
+                    return self.finish_at(rim);
+                }
                 let at_trim = matches!(end, End::Stalled { .. }) && leaf_geometry.crossed;
                 let slid = if at_trim { self.slide_to_trim(best, face as usize) } else { None };
                 if let Some(foot) = slid {
@@ -52,7 +60,7 @@ impl Search<'_> {
 
     fn foot(&self, best: Best, entity: EntityId, parameters: [f64; 2], point: DVec3, end: End) -> Foot {
         let distance = point.distance(self.x);
-        Foot { point, entity, parameters, distance, end, proven: self.proven, trace: self.trace(best.member) }
+        Foot { point, entity, parameters, distance, end, doubt: self.doubt, trace: self.trace(best.member) }
     }
 
     fn nowhere(&self) -> Foot {
@@ -64,7 +72,7 @@ impl Search<'_> {
             parameters: [f64::NAN; 2],
             distance: f64::INFINITY,
             end,
-            proven: false,
+            doubt: Some(Doubt::NotSearched),
             trace: self.trace(usize::MAX),
         }
     }

@@ -17,8 +17,9 @@ pub struct Foot {
     pub distance: f64,
     /// How the search ended.
     pub end: End,
-    /// Whether no other point of the group can be nearer (by more than rounding): every leaf was either farther away or had one minimum only.
-    pub proven: bool,
+    /// Why another point of the group might be nearer; `None` where the foot is proven to be the closest point (up to rounding): every
+    /// leaf was either farther away or had one minimum only.
+    pub doubt: Option<Doubt>,
     /// For the next query with this foot as a hint.
     pub(crate) trace: Trace,
 }
@@ -39,6 +40,34 @@ pub(crate) struct Trace {
 impl PartialEq for Trace {
     fn eq(&self, _: &Self) -> bool {
         true
+    }
+}
+
+impl Foot {
+    /// Whether the foot is proven to be the closest point of the group.
+    pub fn is_proven(&self) -> bool {
+        self.doubt.is_none()
+    }
+}
+
+/// Why a foot is not proven to be the closest point; of several reasons, the last of these.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Doubt {
+    /// A surface or curve near by is of a kind whose hulls are sampled.
+    SampledHull,
+    /// The search spent [`CUT_BUDGET`](crate::tolerance::CUT_BUDGET) before it had cut all that may be nearer.
+    Budget,
+    /// The search was made without proof, or the query point is not finite.
+    NotSearched,
+}
+
+impl std::fmt::Display for Doubt {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::SampledHull => "the hull of a surface or curve near by is sampled",
+            Self::Budget => "too many parts are as near",
+            Self::NotSearched => "not searched",
+        })
     }
 }
 

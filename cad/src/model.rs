@@ -137,15 +137,15 @@ pub struct Vertex {
     pub tolerance: f64,
 }
 
-/// A set of faces that the file itself names: an IGES 402 group, or faces that share a name.
+/// A set of entities that the file itself names: an IGES 402 group, or faces (else edges) that share a name. `group:NAME` refers to it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NamedGroup {
     /// Its name.
     pub name: String,
-    /// Reference of the group's own entity; empty for faces that share a name.
+    /// Reference of the group's own entity; empty for entities that share a name.
     pub reference: String,
-    /// Its faces, ascending.
-    pub faces: Vec<FaceId>,
+    /// Its faces, and its edges that bound none of them, ascending.
+    pub members: Vec<EntityId>,
 }
 
 /// What queries need, shared by the model and its groups.
@@ -214,7 +214,7 @@ impl Model {
         &self.vertices
     }
 
-    /// Sets of faces that the file names.
+    /// Sets of entities that the file names.
     pub fn groups(&self) -> &[NamedGroup] {
         &self.groups
     }

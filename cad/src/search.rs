@@ -12,7 +12,7 @@
 use crate::certificate::{Bowl, Certificate};
 use crate::chart::{Jet, Rect};
 use crate::closed_form;
-use crate::foot::Foot;
+use crate::foot::{Doubt, Foot};
 use crate::group::{Group, Member};
 use crate::leaf::{EdgeGeometry, EdgeLeaf, FaceGeometry, FaceLeaf};
 use crate::newton::{self, Found, Local};
@@ -33,8 +33,10 @@ pub(crate) struct Search<'a> {
     pub(crate) group: &'a Group,
     pub(crate) x: DVec3,
     pub(crate) best: Option<Best>,
+    /// The best foot on an edge or vertex.
+    pub(crate) rim: Option<Best>,
     budget: usize,
-    pub(crate) proven: bool,
+    pub(crate) doubt: Option<Doubt>,
     /// Squared distance that no leaf but that of `best` falls short of; 0 where not known.
     pub(crate) others: f64,
     /// Leaves of faces that must be cut, with their first local minimum: they wait until the bound is as small as the others make it.
@@ -61,7 +63,7 @@ impl Group {
     /// benchmarks. Where the group is trimmed, its answer may lie outside.
     #[doc(hidden)]
     pub fn closest_without_proof(&self, x: DVec3) -> Foot {
-        let mut search = Search { proven: false, ..Search::new(self, x) };
+        let mut search = Search { doubt: Some(Doubt::NotSearched), ..Search::new(self, x) };
         let seed = self.seed(x);
         match self.members[seed] {
             Member::Face { face, leaf } => {
@@ -77,7 +79,16 @@ impl Group {
 
 impl<'a> Search<'a> {
     fn new(group: &'a Group, x: DVec3) -> Self {
-        Self { group, x, best: None, budget: CUT_BUDGET, proven: true, others: f64::INFINITY, deferred: Vec::new() }
+        Self {
+            group,
+            x,
+            best: None,
+            rim: None,
+            budget: CUT_BUDGET,
+            doubt: None,
+            others: f64::INFINITY,
+            deferred: Vec::new(),
+        }
     }
 
     pub(crate) fn tie(&self) -> f64 {
@@ -91,7 +102,8 @@ impl<'a> Search<'a> {
 
     /// Whether the foot found on the leaf of `hint` is the closest point: all other leaves are farther away than it.
     fn stays_with(&mut self, hint: &Foot) -> bool {
-        let Some(best) = self.best.filter(|_| hint.proven && self.proven && self.deferred.is_empty()) else {
+        let Some(best) = self.best.filter(|_| hint.is_proven() && self.doubt.is_none() && self.deferred.is_empty())
+        else {
             return false;
         };
         let others = hint.trace.others - hint.trace.x.distance(self.x);
@@ -120,15 +132,19 @@ impl<'a> Search<'a> {
     /// A local minimum at which the foot may lie.
     fn offer(&mut self, member: usize, local: Local) {
         let distance = local.distance_squared.sqrt();
-        let better = |best: Best| {
-            distance < best.distance - self.tie() || (distance <= best.distance + self.tie() && member < best.member)
-        };
+        let tie = self.tie();
+        let better =
+            |best: Best| distance < best.distance - tie || (distance <= best.distance + tie && member < best.member);
+        let found = Best { member, parameters: local.parameters, distance };
+        if !matches!(self.group.members[member], Member::Face { .. }) && self.rim.is_none_or(better) {
+            self.rim = Some(found);
+        }
         if !distance.is_finite() {
             self.others = 0.0;
         } else if self.best.is_none_or(better) {
             let beaten = self.best.filter(|best| best.member != member);
             self.others = self.others.min(beaten.map_or(f64::INFINITY, |best| best.distance * best.distance));
-            self.best = Some(Best { member, parameters: local.parameters, distance });
+            self.best = Some(found);
         } else {
             self.others = self.others.min(local.distance_squared);
         }
@@ -178,7 +194,7 @@ impl<'a> Search<'a> {
         if let Some(local) = closed_form::nearest(&face.chart, &leaf.rect, self.x) {
             return self.offer_on_face(index, face, leaf, local);
         }
-        self.proven &= leaf.sound;
+        self.doubt = self.doubt.max((!leaf.sound).then_some(Doubt::SampledHull));
         let start = start.filter(|p| p[0].is_finite() && p[1].is_finite()).map(|p| leaf.rect.clamp(p));
         if let Some(certificate) = &leaf.certificate {
             let modulus = certificate.modulus(self.x);
@@ -276,7 +292,7 @@ impl<'a> Search<'a> {
                 continue;
             }
             if self.budget == 0 {
-                self.proven = false;
+                self.doubt = self.doubt.max(Some(Doubt::Budget));
                 return;
             }
             self.budget -= 1;
@@ -309,7 +325,7 @@ impl<'a> Search<'a> {
         if let Some(local) = closed_form::nearest_on_curve(&edge.curve, leaf.range, self.x) {
             return self.offer(index, local);
         }
-        self.proven &= leaf.sound;
+        self.doubt = self.doubt.max((!leaf.sound).then_some(Doubt::SampledHull));
         if self.is_decided(leaf.certificate.as_ref()) {
             return self.offer(
                 index,
@@ -327,7 +343,7 @@ impl<'a> Search<'a> {
                 continue;
             }
             if self.budget == 0 {
-                self.proven = false;
+                self.doubt = self.doubt.max(Some(Doubt::Budget));
                 return;
             }
             self.budget -= 1;

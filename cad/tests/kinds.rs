@@ -63,7 +63,7 @@ fn elementary_surfaces_by_analysis() {
             let foot = group.closest(x, None);
             let excess = (foot.distance - distance(x)).abs();
             assert!(excess < 1e-11 * model.diagonal(), "{id} at {x}: {foot:?}, expected {}", distance(x));
-            assert!(foot.proven && !matches!(foot.end, End::Stalled { .. }), "{foot:?}");
+            assert!(foot.is_proven() && !matches!(foot.end, End::Stalled { .. }), "{foot:?}");
         }
     }
 }
@@ -140,7 +140,7 @@ fn free_curves_are_edges() {
             let x = random.in_box(model.bounds().min, model.bounds().max);
             let foot = group.closest(x, None);
             let best = sampled_edge(&model, edge.id, x);
-            assert!(foot.distance <= best + 1e-12 && foot.proven, "{} at {x}: {foot:?} against {best}", edge.id);
+            assert!(foot.distance <= best + 1e-12 && foot.is_proven(), "{} at {x}: {foot:?} against {best}", edge.id);
         }
     }
 }

@@ -151,7 +151,7 @@ fn ask(model: &Model, group: &Group, judges: &mut [Judge], count: usize, tally: 
         };
         let excess = |d: f64| d > least + WRONG * model.diagonal();
         tally.queries += 1;
-        tally.unproven += usize::from(!ours.proven);
+        tally.unproven += usize::from(!ours.is_proven());
         if excess(ours.distance - slack) {
             tally.ours += 1;
             println!("    WORSE at {x}: {ours:?}, others {best:?}");

@@ -113,7 +113,7 @@ fn model(model: &Model) -> Result<String, Failure> {
         writeln!(text, "  {} {} {} {:?}", face.id, face.kind, label.reference, label.name)?;
     }
     for group in model.groups() {
-        let members: Vec<String> = group.faces.iter().map(ToString::to_string).collect();
+        let members: Vec<String> = group.members.iter().map(ToString::to_string).collect();
         writeln!(text, "  group {:?}: {}", group.name, members.join(", "))?;
     }
     flaws(&mut text, &health)?;

@@ -167,7 +167,7 @@ fn compare(
     let global = some.len() as f64 / start.elapsed().as_secs_f64();
     let best: Vec<f64> = feet.iter().zip(&quick).map(|(a, b)| a.distance.min(b.distance)).collect();
     let best_of_all: Vec<f64> = best.iter().zip(&theirs).map(|(a, b)| a.min(*b)).collect();
-    let unproven = feet.iter().filter(|foot| !foot.proven).count();
+    let unproven = feet.iter().filter(|foot| !foot.is_proven()).count();
     println!("  {name:4} ours {ours:9.3e}/s, {unproven} of {} not proven", xs.len());
     println!("       hinted {hinted:9.3e}/s = {:.2} x; two threads {:.2} x one", hinted / ours, pair / ours);
     println!(
@@ -198,7 +198,7 @@ fn weeble() {
     let xs = queries(&model, &faces, 100_000, 0.005);
     let start = Instant::now();
     let feet = group.closest_batch(&xs, &[]);
-    let unproven = feet.iter().filter(|foot| !foot.proven).count();
+    let unproven = feet.iter().filter(|foot| !foot.is_proven()).count();
     let seconds = start.elapsed().as_secs_f64();
     println!(
         "weeble's torus group: 1e5 points in {seconds:.3} s on {} threads, {unproven} not proven",
