@@ -126,7 +126,7 @@ fn open_edge(shape: &sys::Shape, i: usize) -> Result<(Edge, Option<EdgeGeometry>
     let handle = Arc::new(at("edge", i, shape.curve(i))?);
     edge.kind = kind_of(at("edge", i, handle.form())?.kind);
     let curve = at("edge", i, Curve::new(Arc::clone(&handle), range[0], range[1]))?;
-    Ok((edge, Some(EdgeGeometry { handle, curve, range, leaves: Vec::new() })))
+    Ok((edge, Some(EdgeGeometry { handle, curve, range, tolerance: data.tolerance, leaves: Vec::new() })))
 }
 
 /// Builds the model from a shape and what the child told about it.
@@ -157,7 +157,7 @@ pub(crate) fn model(path: &Path, shape: &sys::Shape, description: Description) -
         faces: surfaces,
         ends: edges.iter().map(|edge| edge.ends).collect(),
         edges: curves,
-        vertices: vertices.iter().map(|vertex| vertex.point).collect(),
+        vertices: vertices.iter().map(|vertex| (vertex.point, vertex.tolerance)).collect(),
     };
     let mut model = Model {
         path: path.to_path_buf(),

@@ -248,7 +248,7 @@ impl Geometry {
             Member::Edge { edge, leaf, .. } => {
                 self.edges[edge as usize].as_ref().map_or(Aabb::EMPTY, |e| e.leaves[leaf as usize].bounds)
             }
-            Member::Vertex { vertex, .. } => Aabb::of_points([self.vertices[vertex as usize]]),
+            Member::Vertex { vertex, .. } => Aabb::of_points([self.vertices[vertex as usize].0]),
         }
     }
 
@@ -263,7 +263,7 @@ impl Geometry {
                 let [a, b] = e.leaves[leaf as usize].range;
                 e.curve.d2(0.5 * (a + b))[0]
             }),
-            Member::Vertex { vertex, .. } => self.vertices[vertex as usize],
+            Member::Vertex { vertex, .. } => self.vertices[vertex as usize].0,
         }
     }
 
@@ -276,7 +276,7 @@ impl Geometry {
             EntityId::Edge(id) => {
                 Evaluation::Curve(CurvePoint::new(curve_d2(&self.edges.get(id.index())?.as_ref()?.handle, u)))
             }
-            EntityId::Vertex(id) => Evaluation::Vertex(*self.vertices.get(id.index())?),
+            EntityId::Vertex(id) => Evaluation::Vertex(self.vertices.get(id.index())?.0),
         };
         evaluation.point().is_finite().then_some(evaluation)
     }

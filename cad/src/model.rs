@@ -154,7 +154,8 @@ pub(crate) struct Geometry {
     /// `None` for degenerate edges.
     pub(crate) edges: Vec<Option<EdgeGeometry>>,
     pub(crate) ends: Vec<[Option<VertexId>; 2]>,
-    pub(crate) vertices: Vec<DVec3>,
+    /// Places and tolerances.
+    pub(crate) vertices: Vec<(DVec3, f64)>,
 }
 
 /// A CAD file, read. Plain data and immutable geometry: all of it may be used from any thread.

@@ -35,6 +35,8 @@ pub(crate) struct Search<'a> {
     pub(crate) best: Option<Best>,
     /// The best foot on an edge or vertex.
     pub(crate) rim: Option<Best>,
+    /// Minima on surfaces that are outside the trim, as long as they are nearer than the best foot.
+    pub(crate) outside: Vec<Best>,
     budget: usize,
     pub(crate) doubt: Option<Doubt>,
     /// Squared distance that no leaf but that of `best` falls short of; 0 where not known.
@@ -84,6 +86,7 @@ impl<'a> Search<'a> {
             x,
             best: None,
             rim: None,
+            outside: Vec::new(),
             budget: CUT_BUDGET,
             doubt: None,
             others: f64::INFINITY,
@@ -163,17 +166,21 @@ impl<'a> Search<'a> {
                 }
             }
             Member::Vertex { vertex, .. } => {
-                let distance_squared = geometry.vertices[vertex as usize].distance_squared(self.x);
+                let distance_squared = geometry.vertices[vertex as usize].0.distance_squared(self.x);
                 self.offer(index, Local { parameters: [0.0; 2], distance_squared });
             }
         }
     }
 
     fn offer_on_face(&mut self, index: usize, face: &FaceGeometry, leaf: &FaceLeaf, local: Local) {
-        if local.distance_squared <= self.bound() && (!leaf.crossed || face.trim.contains(local.parameters)) {
-            self.offer(index, local);
-        } else {
-            self.others = self.others.min(local.distance_squared);
+        let near = local.distance_squared <= self.bound();
+        if near && (!leaf.crossed || face.trim.contains(local.parameters)) {
+            return self.offer(index, local);
+        }
+        self.others = self.others.min(local.distance_squared);
+        if near {
+            let distance = local.distance_squared.sqrt();
+            self.outside.push(Best { member: index, parameters: local.parameters, distance });
         }
     }
 
