@@ -1,4 +1,5 @@
 //! Writes B-spline faces as an IGES file (entities 128), so that benchmarks and tests need no stored CAD.
+#![allow(unreachable_pub)] // each program includes it as a module of its own
 
 use glam::DVec3;
 use std::fmt::Write;

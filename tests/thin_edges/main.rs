@@ -3,7 +3,7 @@
 //! The middle of a straight mesh edge on the convex side of a thin curved section lies inside the section by its sagitta,
 //! often nearer to the other side. `cargo test --release --test thin_edges -- --nocapture` prints the figures;
 //! `SAGITTA_CAD=FOLDER` adds a wind turbine's blade and the ONERA M6.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, unreachable_pub)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 #[macro_use]
 #[path = "../common/mod.rs"]
