@@ -64,7 +64,19 @@ impl Search<'_> {
                 }
                 let at_trim = matches!(end, End::Stalled { .. }) && leaf_geometry.crossed;
                 let slid = if at_trim { self.slide_to_trim(best, face as usize) } else { None };
-                slid.unwrap_or_else(|| self.foot(best, FaceId::new(face as usize).into(), parameters, jet[0], end))
+                slid.unwrap_or_else(|| {
+                    let mut foot = self.foot(
+                        Best { parameters, ..best },
+                        FaceId::new(face as usize).into(),
+                        parameters,
+                        jet[0],
+                        end,
+                    );
+                    if end == End::Interior {
+                        foot.trace.response = newton::response(&jet, self.x);
+                    }
+                    foot
+                })
             }
             Member::Edge { edge, owner, .. } => self.finish_edge(best, edge as usize, owner.map(|face| face as usize)),
             Member::Vertex { vertex, owner } => {
@@ -80,7 +92,7 @@ impl Search<'_> {
 
     fn foot(&self, best: Best, entity: EntityId, parameters: [f64; 2], point: DVec3, end: End) -> Foot {
         let distance = point.distance(self.x);
-        Foot { point, entity, parameters, distance, end, doubt: self.doubt, trace: self.trace(best.member) }
+        Foot { point, entity, parameters, distance, end, doubt: self.doubt, trace: self.trace(Some(best)) }
     }
 
     fn nowhere(&self) -> Foot {
@@ -93,12 +105,19 @@ impl Search<'_> {
             distance: f64::INFINITY,
             end,
             doubt: Some(Doubt::NotSearched),
-            trace: self.trace(usize::MAX),
+            trace: self.trace(None),
         }
     }
 
-    fn trace(&self, member: usize) -> Trace {
-        Trace { group: self.group.number, leaf: member as u32, x: self.x, others: self.others.sqrt() }
+    fn trace(&self, best: Option<Best>) -> Trace {
+        Trace {
+            group: self.group.number,
+            leaf: best.map_or(0, |best| best.member as u32),
+            x: self.x,
+            others: self.others.sqrt(),
+            start: best.map_or([f64::NAN; 2], |best| best.parameters),
+            response: [DVec3::ZERO; 2],
+        }
     }
 
     fn residual_limit(&self, distance: f64) -> f64 {

@@ -35,6 +35,18 @@ pub(crate) struct Trace {
     pub(crate) x: DVec3,
     /// No other leaf of the group is nearer to the query point.
     pub(crate) others: f64,
+    /// Parameters in the leaf.
+    pub(crate) start: [f64; 2],
+    /// How the parameters follow a small move of the query point: their gradients; zero where not known.
+    pub(crate) response: [DVec3; 2],
+}
+
+impl Trace {
+    /// Where Newton's method leads from the old foot for a new query point, at no evaluation.
+    pub(crate) fn follow(&self, x: DVec3) -> [f64; 2] {
+        let by = x - self.x;
+        [0, 1].map(|i| self.start[i] + self.response[i].dot(by))
+    }
 }
 
 impl PartialEq for Trace {

@@ -53,7 +53,7 @@ impl Group {
         if x.is_finite() {
             let hint = hint.filter(|foot| foot.trace.group == self.number && foot.distance.is_finite());
             let seed = hint.map_or_else(|| self.seed(x), |foot| foot.trace.leaf as usize);
-            search.visit(seed, hint.map(|foot| foot.parameters));
+            search.visit(seed, hint.map(|foot| foot.trace.follow(x)));
             if !hint.is_some_and(|hint| search.stays_with(hint)) {
                 search.visit_all_but(seed);
             }
@@ -162,7 +162,7 @@ impl<'a> Search<'a> {
             }
             Member::Edge { edge, leaf, .. } => {
                 if let Some(edge) = &geometry.edges[edge as usize] {
-                    self.visit_edge(index, edge, &edge.leaves[leaf as usize]);
+                    self.visit_edge(index, edge, &edge.leaves[leaf as usize], start.map(|p| p[0]));
                 }
             }
             Member::Vertex { vertex, .. } => {
@@ -325,7 +325,7 @@ impl<'a> Search<'a> {
         certificate.is_some_and(|c| c.modulus(self.x) > 0.0 || c.radius() < POINT * self.group.diagonal)
     }
 
-    fn visit_edge(&mut self, index: usize, edge: &EdgeGeometry, leaf: &EdgeLeaf) {
+    fn visit_edge(&mut self, index: usize, edge: &EdgeGeometry, leaf: &EdgeLeaf, start: Option<f64>) {
         if self.is_far(&leaf.slab) {
             return;
         }
@@ -334,10 +334,8 @@ impl<'a> Search<'a> {
         }
         self.doubt = self.doubt.max((!leaf.sound).then_some(Doubt::SampledHull));
         if self.is_decided(leaf.certificate.as_ref()) {
-            return self.offer(
-                index,
-                newton::on_curve(&edge.curve, leaf.range, self.x, 0.5 * (leaf.range[0] + leaf.range[1])),
-            );
+            let start = start.filter(|t| t.is_finite()).unwrap_or(0.5 * (leaf.range[0] + leaf.range[1]));
+            return self.offer(index, newton::on_curve(&edge.curve, leaf.range, self.x, start));
         }
         let mut parts: Vec<EdgeLeaf> = vec![leaf.clone()];
         while let Some(part) = parts.pop() {

@@ -6,6 +6,7 @@
 //!    (´_.-´ lower `-._  `-.
 //!                      `-._)    blunt: the thickness stays; sharp: it goes to 0 over the last tenth
 //! ```
+#![allow(unreachable_pub)]
 
 use glam::{DVec2, DVec3};
 

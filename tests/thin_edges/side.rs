@@ -1,4 +1,5 @@
 //! One side of a thin body, triangulated coarsely, and its chord points.
+#![allow(unreachable_pub)]
 
 use cad::{FaceId, Group, Model};
 use glam::DVec3;
