@@ -22,41 +22,50 @@ fn bytes_of(feet: &[Foot]) -> Vec<u8> {
 
 /// Closest points with and without hints, and evaluations, on 1, 2 and 4 threads.
 fn race(model: &Model, count: usize) {
-        let faces: Vec<_> = model.faces().iter().map(|face| face.id).collect();
-        let group = Group::of_faces(&model, &faces).unwrap();
-        let mut random = Random(61);
-        let bounds = model.bounds();
-        let xs: Vec<DVec3> = (0..count).map(|_| random.in_box(bounds.min, bounds.max)).collect();
-        let moved: Vec<DVec3> =
-            xs.iter().map(|x| *x + 1e-3 * model.diagonal() * random.in_box(-DVec3::ONE, DVec3::ONE)).collect();
-        let run = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| {
-                let feet = group.closest_batch(&xs, &[]);
-                let hints: Vec<Option<Foot>> = feet.iter().copied().map(Some).collect();
-                let hinted = group.closest_batch(&moved, &hints);
-                let at: Vec<_> = feet.iter().map(|foot| (foot.entity, foot.parameters)).collect();
-                let points = group.evaluate_batch(&at);
-                let mut bytes = [bytes_of(&feet), bytes_of(&hinted)].concat();
-                let jets =
-                    points.iter().flatten().filter_map(|e| if let Evaluation::Surface(s) = e { Some(s) } else { None });
-                jets.for_each(|s| {
-                    let vectors = [s.point].into_iter().chain(s.first).chain(s.second);
-                    vectors.flat_map(|v| v.to_array()).for_each(|number| bytes.extend(number.to_le_bytes()));
-                });
-                bytes
-            })
-        };
-        let one = run(1);
-        for threads in [2, 4] {
-            assert!(run(threads) == one, "{:?}: {threads} threads", model.path());
-        }
-        println!(
-            "{:?}: {count} queries, as many with hints, on 1, 2 and 4 threads: the same {} bytes",
-            model.path(),
-            one.len()
-        );
+    let faces: Vec<_> = model.faces().iter().map(|face| face.id).collect();
+    let group = Group::of_faces(&model, &faces).unwrap();
+    let mut random = Random(61);
+    let bounds = model.bounds();
+    let xs: Vec<DVec3> = (0..count).map(|_| random.in_box(bounds.min, bounds.max)).collect();
+    let moved: Vec<DVec3> =
+        xs.iter().map(|x| *x + 1e-3 * model.diagonal() * random.in_box(-DVec3::ONE, DVec3::ONE)).collect();
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let feet = group.closest_batch(&xs, &[]);
+            let hints: Vec<Option<Foot>> = feet.iter().copied().map(Some).collect();
+            let hinted = group.closest_batch(&moved, &hints);
+            let at: Vec<_> = feet.iter().map(|foot| (foot.entity, foot.parameters)).collect();
+            let points = group.evaluate_batch(&at);
+            let mut bytes = [bytes_of(&feet), bytes_of(&hinted)].concat();
+            let jets =
+                points.iter().flatten().filter_map(|e| if let Evaluation::Surface(s) = e { Some(s) } else { None });
+            jets.for_each(|s| {
+                let vectors = [s.point].into_iter().chain(s.first).chain(s.second);
+                vectors.flat_map(|v| v.to_array()).for_each(|number| bytes.extend(number.to_le_bytes()));
+            });
+            bytes
+        })
+    };
+    let one = run(1);
+    for threads in [2, 4] {
+        assert!(run(threads) == one, "{:?}: {threads} threads", model.path());
     }
+    println!(
+        "{:?}: {count} queries, as many with hints, on 1, 2 and 4 threads: the same {} bytes",
+        model.path(),
+        one.len()
+    );
+}
+
+/// A wing with edges and corners.
+fn wing() -> Model {
+    fixture("wing_sharp/wing_sharp.step")
+}
+
+/// Surfaces of all kinds; those that OCCT evaluates are slow.
+fn kinds() -> Model {
+    shape("kinds.brep")
 }
 
 #[test]
