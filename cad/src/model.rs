@@ -9,6 +9,9 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
+/// Entities that a message lists.
+const LISTED: usize = 5;
+
 /// What a face or an edge is, as the file says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[allow(missing_docs)] // the names say it
@@ -228,6 +231,19 @@ impl Model {
     /// What OCCT's checks say of entities of the file, by reference; the model may be right nevertheless.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
+    }
+
+    /// What a user of the model should know of the reading: entities of the file that came to no shape or that OCCT calls malformed, the first
+    /// by reference. `None` where there are none.
+    pub fn losses(&self) -> Option<String> {
+        let told = |list: &[String], what: &str| {
+            let first = list.iter().take(LISTED).map(String::as_str).collect::<Vec<_>>().join(", ");
+            let more = if list.len() > LISTED { ", ..." } else { "" };
+            (!list.is_empty()).then(|| format!("{} entities of it {what}: {first}{more}", list.len()))
+        };
+        let lost = told(&self.dropped, "were dropped by the reader").into_iter();
+        let told: Vec<String> = lost.chain(told(&self.warnings, "are malformed")).collect();
+        (!told.is_empty()).then(|| format!("{}: {}", self.path.display(), told.join("; ")))
     }
 
     /// Close box of all entities, see [`Face::bounds`].

@@ -11,6 +11,7 @@
 
 use crate::ids::{EdgeId, EntityId, FaceId, VertexId};
 use crate::model::{Edge, Model};
+use std::collections::BTreeSet;
 use thiserror::Error;
 
 /// Why a reference does not lead to an entity.
@@ -164,15 +165,24 @@ impl Model {
         let between = |edge: &&Edge| edge.faces.contains(&a) && edge.faces.contains(&b) && (a != b || edge.seam);
         let mut shared: Vec<EntityId> = self.edges().iter().filter(between).map(|edge| edge.id.into()).collect();
         if shared.is_empty() {
-            // not sewn: an edge of one face that is doubled by one of the other, or a seam by one of the same
-            let of = |set: &[EdgeId], face| {
-                set.iter().filter(|&&edge| self.edge(edge).is_some_and(|edge| edge.faces.contains(&face))).count()
-            };
-            let needed = if a == b { 2 } else { 1 };
-            let sets = self.sewing().merged.iter();
-            let common = sets.filter(|set| of(set, a) >= needed && of(set, b) >= needed);
-            shared.extend(common.filter_map(|set| set.first()).map(|&edge| EntityId::Edge(edge)));
+            shared = self.between_unsewn(a, b).into_iter().map(EntityId::Edge).collect();
         }
         if shared.is_empty() { Err(self.unknown(reference, format!("{a} and {b} share no edge"))) } else { Ok(shared) }
+    }
+
+    /// Edges of one face that are doubled by edges of the other, or a seam by one of the same face. Of two that double each other it is the
+    /// first, of a long one and its piece the piece: it alone lies between the two faces.
+    fn between_unsewn(&self, a: FaceId, b: FaceId) -> Vec<EdgeId> {
+        let of = |set: &[EdgeId], face| -> Vec<&Edge> {
+            set.iter().filter_map(|&id| self.edge(id)).filter(|edge| edge.faces.contains(&face)).collect()
+        };
+        let mut between = BTreeSet::new();
+        for set in &self.sewing().merged {
+            let on_b = of(set, b);
+            for one in of(set, a) {
+                between.extend(on_b.iter().filter_map(|other| self.doubled_part(one, other)));
+            }
+        }
+        between.into_iter().collect()
     }
 }

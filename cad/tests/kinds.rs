@@ -130,16 +130,19 @@ fn instances_of_an_assembly_are_entities_of_their_own() {
 
 #[test]
 fn free_curves_are_edges() {
-    let model = shape("curves.step");
+    ["curves.step", "curves.igs"].iter().for_each(|name| free_curves(&shape(name)));
+}
+
+fn free_curves(model: &Model) {
     assert_eq!((model.faces().len(), model.edges().len()), (0, 3));
     let mut random = Random(43);
     for edge in model.edges() {
-        let group = Group::of_edges(&model, &[edge.id]).unwrap();
+        let group = Group::of_edges(model, &[edge.id]).unwrap();
         assert!(edge.faces.is_empty() && !edge.label.reference.is_empty(), "{edge:?}");
         for _ in 0..50 {
             let x = random.in_box(model.bounds().min, model.bounds().max);
             let foot = group.closest(x, None);
-            let best = sampled_edge(&model, edge.id, x);
+            let best = sampled_edge(model, edge.id, x);
             assert!(foot.distance <= best + 1e-12 && foot.is_proven(), "{} at {x}: {foot:?} against {best}", edge.id);
         }
     }

@@ -46,6 +46,44 @@ fn references_resolve() {
     }
 }
 
+/// A group of an IGES file, of faces or of free curves, by its reference; one without a name has no other.
+#[test]
+fn groups_of_the_file_are_ready_groups() {
+    for (name, kind, count) in [("unsewn.igs", "face", 7), ("curves.igs", "edge", 3)] {
+        let model = common::shape(name);
+        let [group] = model.groups() else { panic!("{:?}", model.groups()) };
+        assert!(group.reference.starts_with("iges:D") && group.members.len() == count, "{group:?}");
+        assert!(group.members.iter().all(|member| member.to_string().starts_with(kind)), "{group:?}");
+        assert_eq!(model.resolve(&group.reference).unwrap(), group.members);
+    }
+}
+
+/// `group:` takes all entities of one name, `name:` only what has the name to itself.
+#[test]
+fn names_that_several_have_are_ready_groups() {
+    let text = std::fs::read_to_string(common::path("weeble/weeble.step")).unwrap();
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("named.step");
+    let mut parts: Vec<String> = text.split("ADVANCED_FACE('").map(str::to_owned).collect();
+    for (part, name) in parts[1..].iter_mut().zip(["BODY", "BODY", "FAR FIELD"]) {
+        part.insert_str(0, name);
+    }
+    std::fs::write(&path, parts.join("ADVANCED_FACE('")).unwrap();
+    let model = Model::read(&path, &options()).unwrap();
+    let body = model.resolve("group:BODY").unwrap();
+    assert_eq!(body.len(), 2);
+    match model.resolve("name:BODY") {
+        Err(error @ cad::ReferenceError::Ambiguous { .. }) => {
+            let told = error.to_string();
+            assert!(body.iter().all(|id| told.contains(&id.to_string())) && told.contains("group:"), "{told}");
+        }
+        other => panic!("{other:?}"),
+    }
+    assert_eq!(model.resolve("name:\"FAR FIELD\"").unwrap().len(), 1);
+    let told = model.resolve("group:WING").unwrap_err().to_string();
+    assert!(told.contains("ready groups: BODY"), "{told}");
+}
+
 #[test]
 fn scale_moves_coordinates_and_tolerances_but_not_the_unit() {
     for name in ["weeble/weeble.step", "weeble/weeble.igs"] {

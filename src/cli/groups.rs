@@ -39,6 +39,8 @@ struct Listing {
     edges: Vec<Entity>,
     vertices: Vec<Entity>,
     groups: Vec<Ready>,
+    /// What is missing or malformed in the file.
+    losses: Option<String>,
 }
 
 #[derive(Serialize)]
@@ -102,6 +104,7 @@ fn listing(model: &Model) -> Listing {
         edges: edges.collect(),
         vertices: vertices.collect(),
         groups: groups.collect(),
+        losses: model.losses(),
     }
 }
 
@@ -138,6 +141,9 @@ impl Listing {
         writeln!(text, "{} ready groups", self.groups.len())?;
         for group in &self.groups {
             writeln!(text, "  {}: {}", group.reference, group.members.join(" "))?;
+        }
+        if let Some(losses) = &self.losses {
+            writeln!(text, "note: {losses}")?;
         }
         Ok(text.trim_end().to_owned())
     }

@@ -114,7 +114,8 @@ fn model(model: &Model) -> Result<String, Failure> {
     }
     for group in model.groups() {
         let members: Vec<String> = group.members.iter().map(ToString::to_string).collect();
-        writeln!(text, "  group {:?}: {}", group.name, members.join(", "))?;
+        let name = if group.name.is_empty() { &group.reference } else { &group.name };
+        writeln!(text, "  group {name:?}: {}", members.join(", "))?;
     }
     flaws(&mut text, &health)?;
     Ok(text)

@@ -95,6 +95,7 @@ fn project(options: &Options, teller: &Teller) -> Result<(Vec<Foot>, FeetReport)
     let seconds = start.elapsed().as_secs_f64();
     let cad = CadReport::new(&model, options.cad_scale);
     let mut report = FeetReport::new(cad, &references, entities.len(), &feet, seconds);
+    report.notes.extend(model.losses());
     report.notes.extend(unit_trap(&xs, &group, report.mean_distance));
     Ok((feet, report))
 }
