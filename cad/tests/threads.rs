@@ -23,7 +23,7 @@ fn bytes_of(feet: &[Foot]) -> Vec<u8> {
 /// Closest points with and without hints, and evaluations, on 1, 2 and 4 threads.
 fn race(model: &Model, count: usize) {
     let faces: Vec<_> = model.faces().iter().map(|face| face.id).collect();
-    let group = Group::of_faces(&model, &faces).unwrap();
+    let group = Group::of_faces(model, &faces).unwrap();
     let mut random = Random(61);
     let bounds = model.bounds();
     let xs: Vec<DVec3> = (0..count).map(|_| random.in_box(bounds.min, bounds.max)).collect();
