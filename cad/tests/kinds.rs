@@ -96,6 +96,22 @@ fn all_kinds_against_occt_and_samples() {
     }
 }
 
+/// Far from the surface, where distances to its parts differ little, hulls that do not shrink with the part would leave feet unproven.
+#[test]
+fn feet_on_offset_surfaces_are_proven_from_afar() {
+    let model = shape("kinds.brep");
+    let mut random = Random(59);
+    for face in model.faces().iter().filter(|face| face.kind == Kind::Offset) {
+        let group = Group::of_faces(&model, &[face.id]).unwrap();
+        let reach = DVec3::splat(face.bounds.diagonal());
+        for _ in 0..200 {
+            let x = random.in_box(face.bounds.min - reach, face.bounds.max + reach);
+            let foot = group.closest(x, None);
+            assert!(foot.is_proven(), "{} at {x}: {foot:?}", face.id);
+        }
+    }
+}
+
 /// The hole of face 13 is a circle of radius 0.9 in parameters, around (1.5, 0.5), written a period away.
 #[test]
 fn a_hole_a_period_away_is_a_hole() {
