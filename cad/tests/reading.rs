@@ -154,3 +154,47 @@ fn dangling_references_do_not_end_the_parent() {
         }
     }
 }
+
+/// Cycles, self-references, numbers that are none: an error that names the file, or a model, within the time limit.
+#[test]
+fn cyclic_and_self_referring_files_end_in_time() {
+    let weeble = std::fs::read_to_string(common::path("weeble/weeble.step")).unwrap();
+    let assembly = std::fs::read_to_string(common::shape_path("assembly.step")).unwrap();
+    let edited = |text: &str, word: &str, edit: &dyn Fn(&str) -> String| -> String {
+        let lines = text.split(";\n").map(|line| if line.contains(word) { edit(line) } else { line.to_owned() });
+        lines.collect::<Vec<_>>().join(";\n")
+    };
+    // every usage uses the whole in itself
+    let usages: Vec<&str> = assembly.split(";\n").filter(|line| line.contains("NEXT_ASSEMBLY_USAGE")).collect();
+    let whole = usages[0].rsplit('#').nth(1).unwrap().split(',').next().unwrap();
+    let cyclic = edited(&assembly, "NEXT_ASSEMBLY_USAGE", &|line| {
+        let (head, _) = line.rsplit_once('#').unwrap();
+        format!("{head}#{whole},$)")
+    });
+    // a placement whose origin is itself
+    let axis = weeble.split(";\n").find(|line| line.contains("= AXIS2_PLACEMENT_3D(")).unwrap();
+    let [own, origin] = [1, 2].map(|k| axis.split('#').nth(k).unwrap().split([' ', ',']).next().unwrap());
+    let narcissus = weeble.replacen(axis, &axis.replacen(&format!("#{origin},"), &format!("#{own},"), 1), 1);
+    let point = |value: &str| {
+        let at = weeble.find("CARTESIAN_POINT('',(").unwrap() + "CARTESIAN_POINT('',(".len();
+        let end = at + weeble[at..].find(')').unwrap();
+        format!("{}{value},{value},{value}{}", &weeble[..at], &weeble[end..])
+    };
+    let files =
+        [("cyclic.step", cyclic), ("self.step", narcissus), ("nan.step", point("NAN")), ("huge.step", point("1.E999"))];
+    let dir = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        let path = dir.path().join(name);
+        assert!(text != weeble && text != assembly, "{name} is spoilt");
+        std::fs::write(&path, text).unwrap();
+        let start = std::time::Instant::now();
+        let limit = Duration::from_secs(5);
+        let outcome = Model::read(&path, &cad::ReadOptions { timeout: limit, ..options() });
+        // the parent assembles what the child did; the machine may be busy
+        assert!(start.elapsed() < 3 * limit, "{name}: {:?}", start.elapsed());
+        match outcome {
+            Err(error) => assert!(error.to_string().contains(name), "{error}"),
+            Ok(model) => assert!(model.diagonal().is_finite(), "{name}: {model:?}"),
+        }
+    }
+}

@@ -3,10 +3,12 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use cad::{Aabb, Health, Kind as EntityKind, Model, ReadOptions};
 use clap::Args;
 
+use super::curve::positive;
 use super::{DONE, Failure, print};
 use crate::formats;
 use crate::mesh::Mesh;
@@ -16,6 +18,9 @@ use crate::mesh::Mesh;
 pub(super) struct Options {
     /// A CAD, mesh or linkage file
     file: PathBuf,
+    /// Seconds after which reading CAD is given up
+    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = positive)]
+    cad_timeout: f64,
 }
 
 /// Tells what a file holds; its kind is found by its content.
@@ -24,7 +29,10 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let text = match kind(path)? {
         Kind::Mesh => mesh(&formats::read(path)?)?,
         Kind::Linkage => linkage(path)?,
-        Kind::Cad => model(&Model::read(path, &ReadOptions::default())?)?,
+        Kind::Cad => {
+            let timeout = Duration::from_secs_f64(options.cad_timeout);
+            model(&Model::read(path, &ReadOptions { timeout, ..ReadOptions::default() })?)?
+        }
     };
     print(&format!("{}: {}", path.display(), text.trim_end()))?;
     Ok(DONE)
