@@ -261,6 +261,7 @@ fn tie(job: &Job, linear: &Mesh, boundary: &Boundary, model: Model) -> Result<(T
         };
         let tied = associate::associate(linear, boundary, model, &claims, job.max_offset);
         let mut tied = tied.map_err(|cause| refused(&job.mesh, &job.cad, cause))?;
+        tied.notes.extend(model.losses());
         if let (Some(path), false) = (&job.linkage, claims.trusted) {
             let note = "names another CAD file; its numbers were held against this one";
             tied.notes.push(format!("{} {note}", path.display()));

@@ -86,7 +86,7 @@ impl Projector<'_> {
             (_, _, Some(group)) => {
                 let feet: Vec<Foot> = wishes.iter().map(|&x| group.closest(x, None)).collect();
                 self.result.projections += feet.len();
-                self.result.unproven += feet.iter().filter(|f| !f.proven).count();
+                self.result.unproven += feet.iter().filter(|f| !f.is_proven()).count();
                 feet.iter().map(|f| f.point).collect()
             }
             _ => wishes.to_vec(),

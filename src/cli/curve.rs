@@ -96,7 +96,8 @@ fn scale(text: &str) -> Result<Scale, String> {
     if text == "auto" { Ok(Scale(None)) } else { positive(text).map(|factor| Scale(Some(factor))) }
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+/// A finite number above 0.
+pub(super) fn positive(text: &str) -> Result<f64, String> {
     let value = text.parse::<f64>().ok().filter(|v| v.is_finite() && *v > 0.0);
     value.ok_or_else(|| format!("{text:?} is not a positive number"))
 }

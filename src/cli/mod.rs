@@ -1,12 +1,15 @@
 //! The commands of the `sagitta` program.
 //!
-//! Exit codes: 0 done and certified; 2 could not run; 3 certified with some faces not on the CAD; 4 not certified;
+//! Exit codes: 0 done and certified; 2 could not run; 3 certified with some faces not on the CAD; 4 not certified (`project`: some feet not proven);
 //! 5 stopped early, certified. Results go to stdout, progress and errors to stderr.
 
 mod check;
 mod curve;
+mod groups;
 mod info;
+mod points;
 mod progress;
+mod project;
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -35,9 +38,13 @@ Examples:
       -o weeble_p2.vtu --report weeble_p2.json
   sagitta check weeble_p3.msh --linear fixtures/weeble/weeble.msh
   sagitta info fixtures/weeble/weeble.step
+  sagitta groups fixtures/weeble/weeble.step
+  sagitta project fixtures/weeble/weeble.step fixtures/samples/points.csv \\
+      --group face:2,face:3 -o feet.csv --report feet.json
 
 Exit codes: 0 done and certified, 2 could not run, 3 certified with some faces
-not on the CAD, 4 not certified, 5 stopped early but certified.";
+not on the CAD, 4 not certified, 5 stopped early but certified. For project: 4
+where some feet are not proven to be the closest.";
 
 /// Curves linear viscous meshes onto their CAD: P1 in, P2, P3 or P4 out, every element certified valid.
 #[derive(Parser)]
@@ -58,6 +65,12 @@ enum Command {
     /// Tell what a CAD, mesh or linkage file holds
     #[command(after_help = EXAMPLES)]
     Info(info::Options),
+    /// List the entities and ready groups of a CAD file, by the references that commands and linkage files take
+    #[command(after_help = EXAMPLES)]
+    Groups(groups::Options),
+    /// Project points on CAD: the closest point of a set of faces and edges, and whether it is proven
+    #[command(after_help = EXAMPLES)]
+    Project(project::Options),
 }
 
 /// Runs the program with its arguments, the first of which is its name.
@@ -81,6 +94,8 @@ pub fn run(arguments: Vec<OsString>) -> ExitCode {
         Command::Curve(options) => curve::run(&options),
         Command::Check(options) => check::run(&options),
         Command::Info(options) => info::run(&options),
+        Command::Groups(options) => groups::run(&options),
+        Command::Project(options) => project::run(&options),
     };
     match outcome {
         Ok(code) => code.into(),
