@@ -6,6 +6,7 @@
 mod check;
 mod curve;
 mod info;
+mod link;
 mod progress;
 
 use std::ffi::OsString;
@@ -55,6 +56,9 @@ enum Command {
     /// Certify any mesh of order 1 to 4: is every element's Jacobian positive everywhere?
     #[command(after_help = EXAMPLES)]
     Check(check::Options),
+    /// Write the linkage file of a mesh: which of its faces, edges and points lie on which CAD entities
+    #[command(after_help = EXAMPLES)]
+    Link(link::Options),
     /// Tell what a CAD, mesh or linkage file holds
     #[command(after_help = EXAMPLES)]
     Info(info::Options),
@@ -80,6 +84,7 @@ pub fn run(arguments: Vec<OsString>) -> ExitCode {
     let outcome = match program.command {
         Command::Curve(options) => curve::run(&options),
         Command::Check(options) => check::run(&options),
+        Command::Link(options) => link::run(&options),
         Command::Info(options) => info::run(&options),
     };
     match outcome {
