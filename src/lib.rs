@@ -53,3 +53,4 @@ pub mod quality;
 pub mod report;
 pub mod retreat;
 pub mod smooth;
+pub mod validate;

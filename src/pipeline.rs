@@ -6,7 +6,9 @@ use std::time::Instant;
 use cad::{Model, ReadOptions};
 use glam::DVec3;
 
-use crate::associate::{self, AssociateError, Association, Boundary, Choice, LinkageError, Summary, TieError, UnknownPatch};
+use crate::associate::{
+    self, AssociateError, Association, Boundary, Choice, LinkageError, Summary, TieError, UnknownPatch,
+};
 use crate::certify::{self, Certificate};
 use crate::element::Order;
 use crate::elevate::{Elevated, elevate};
@@ -283,9 +285,11 @@ fn tie(job: &Job, linear: &Mesh, boundary: &Boundary, model: Model) -> Result<(a
     let straight = straight.map_err(|cause| PipelineError::UnknownPatch { mesh: job.mesh.clone(), cause })?;
     let attempt = |model: &Model| -> Result<associate::Tied, PipelineError> {
         let choose = |claims: &mut associate::Claims| claims.leave_straight(boundary, &straight);
-        associate::tie(job.linkage.as_deref(), linear, boundary, model, job.max_offset, &choose).map_err(|error| match error {
-            TieError::Linkage(error) => error.into(),
-            TieError::Associate(cause) => refused(&job.mesh, &job.cad, cause),
+        associate::tie(job.linkage.as_deref(), linear, boundary, model, job.max_offset, &choose).map_err(|error| {
+            match error {
+                TieError::Linkage(error) => error.into(),
+                TieError::Associate(cause) => refused(&job.mesh, &job.cad, cause),
+            }
         })
     };
     let first = attempt(&model);

@@ -49,10 +49,8 @@ pub fn document(
         Some(Attribute { id, name: Some(name.into()), value, origin: own })
     };
     let generator = format!("sagitta {}", env!("CARGO_PKG_VERSION"));
-    let attributes = [
-        attribute(1, "mesh generator", generator),
-        attribute(2, "geometry format", model.format().to_string()),
-    ];
+    let attributes =
+        [attribute(1, "mesh generator", generator), attribute(2, "geometry format", model.format().to_string())];
     let (references, geometry_groups) = builder.geometry();
     Ok(Document {
         version: "1.0".into(),
@@ -64,7 +62,12 @@ pub fn document(
             origin: own,
         }],
         geometry_groups,
-        mesh_files: vec![MeshFile { filename: file_name(mesh_file), aref: None, models: vec![mesh_model], origin: own }],
+        mesh_files: vec![MeshFile {
+            filename: file_name(mesh_file),
+            aref: None,
+            models: vec![mesh_model],
+            origin: own,
+        }],
         ..Document::default()
     })
 }
@@ -193,16 +196,13 @@ impl Builder<'_> {
         for claim in claims.strings.iter().filter(|claim| !claim.entities.is_empty()) {
             let paths = paths(&claim.items);
             for (number, path) in paths.iter().enumerate() {
-                let part = if paths.len() > 1 { format!("{}/{}", claim.label, number + 1) } else { claim.label.clone() };
+                let part =
+                    if paths.len() > 1 { format!("{}/{}", claim.label, number + 1) } else { claim.label.clone() };
                 let indices = self.indices(path.iter().flatten())?;
                 let run =
                     EdgeRun { common: Common::default(), encoding: Encoding::Text, indices, origin: Origin::MADE };
                 strings.push(MeshString {
-                    common: Common {
-                        name: Some(part.into()),
-                        gref: self.gref(&claim.entities),
-                        ..Common::default()
-                    },
+                    common: Common { name: Some(part.into()), gref: self.gref(&claim.entities), ..Common::default() },
                     body: StringBody::Edges(vec![run]),
                     parameters: Vec::new(),
                     origin: Origin::MADE,

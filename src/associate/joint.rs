@@ -85,7 +85,8 @@ impl<'a> Joints<'a> {
         let mut worst: Option<f64> = None;
         for share in STATIONS {
             let [from, to] = own.parameters;
-            let Some(Evaluation::Curve(at)) = self.model.evaluate(own.id.into(), [from + share * (to - from), 0.0]) else {
+            let Some(Evaluation::Curve(at)) = self.model.evaluate(own.id.into(), [from + share * (to - from), 0.0])
+            else {
                 continue;
             };
             let tangent = at.tangent?;

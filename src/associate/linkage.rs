@@ -79,10 +79,15 @@ pub fn read_linkage(path: &Path, mesh: &Mesh, boundary: &Boundary, model: &Model
 
 /// Whether every CAD file that the document names has the name of this one.
 fn names(document: &linkage_schema::Document, cad: &Path) -> bool {
+    !document.geometry_files.is_empty() && document.geometry_files.iter().all(|file| same_file(&file.filename, cad))
+}
+
+/// Whether a document means this file: it has the same name, in whatever folder; documents may leave the extension out.
+#[must_use]
+pub fn same_file(named: &str, path: &Path) -> bool {
     // A path in the document may be another system's: compare what follows the last separator of either kind.
-    let name = |text: &str| text.rsplit(['/', '\\']).next().unwrap_or(text).to_owned();
-    let own = name(&cad.to_string_lossy());
-    !document.geometry_files.is_empty() && document.geometry_files.iter().all(|file| name(&file.filename) == own)
+    let name = named.rsplit(['/', '\\']).next().unwrap_or(named);
+    [path.file_name(), path.file_stem()].into_iter().flatten().any(|own| own.to_string_lossy() == name)
 }
 
 struct Reader<'a> {

@@ -48,10 +48,5 @@ fn by_corners(mesh: &Mesh, corners: &[NodeId]) -> Side {
     // The sum over the loop is twice the area vector of a triangle, and that of the mean plane of a quadrilateral.
     let area: DVec3 = (0..count).map(|q| points[q].cross(points[(q + 1) % count])).sum();
     let size = (0..count).map(|q| points[q].distance(points[(q + 1) % count])).fold(0.0, f64::max);
-    Side {
-        middle: points.iter().sum::<DVec3>() / count as f64,
-        normal: area.normalize_or_zero(),
-        size,
-        cells: 0,
-    }
+    Side { middle: points.iter().sum::<DVec3>() / count as f64, normal: area.normalize_or_zero(), size, cells: 0 }
 }

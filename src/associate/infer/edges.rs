@@ -71,7 +71,8 @@ pub(super) fn points(
             points.entry(vertex).or_default().push(node);
         }
     }
-    let claim = |(id, items): (VertexId, Vec<NodeId>)| Claimed { label: id.to_string(), items, entities: vec![id.into()] };
+    let claim =
+        |(id, items): (VertexId, Vec<NodeId>)| Claimed { label: id.to_string(), items, entities: vec![id.into()] };
     // Two nodes at one vertex are one too many to say which is the corner.
     points.into_iter().filter(|(_, nodes)| nodes.len() == 1).map(claim).collect()
 }

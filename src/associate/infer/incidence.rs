@@ -16,17 +16,19 @@ const BULGE: f64 = 0.5;
 
 /// The CAD entities at every node of the mesh; nothing at nodes inside the volume.
 #[derive(Debug)]
-pub(super) struct Incidence {
+pub struct Incidence {
     /// CAD faces within tolerance, ascending.
-    pub(super) faces: Vec<Vec<FaceId>>,
+    pub faces: Vec<Vec<FaceId>>,
     /// CAD edges within tolerance, doubled ones as one, with the parameter of the foot.
     edges: Vec<Vec<(EdgeId, f64)>>,
     /// The CAD vertex within tolerance.
-    pub(super) vertices: Vec<Option<VertexId>>,
+    pub vertices: Vec<Option<VertexId>>,
 }
 
 impl Incidence {
-    pub(super) fn new(
+    /// What holds the nodes of the boundary.
+    #[must_use]
+    pub fn new(
         mesh: &Mesh,
         boundary: &Boundary,
         model: &Model,
@@ -52,7 +54,8 @@ impl Incidence {
             (faces.collect(), edges.collect())
         };
         type AtNode = (Vec<FaceId>, Vec<(EdgeId, f64)>);
-        let (faces, edges) = (0..mesh.points.len()).into_par_iter().map(at).collect::<Vec<AtNode>>().into_iter().unzip();
+        let (faces, edges) =
+            (0..mesh.points.len()).into_par_iter().map(at).collect::<Vec<AtNode>>().into_iter().unzip();
         let vertex = |n: usize| {
             let slack = slack[n]?;
             let near = model.vertices().iter().map(|vertex| (vertex.point.distance(mesh.points[n]), vertex.id));
@@ -64,7 +67,8 @@ impl Incidence {
 
     /// For every boundary edge the CAD edges that it runs along: both ends lie on the CAD edge with no other node between them, and the foot of
     /// the middle lies between theirs.
-    pub(super) fn along(&self, mesh: &Mesh, boundary: &Boundary, model: &Model) -> Vec<Vec<EdgeId>> {
+    #[must_use]
+    pub fn along(&self, mesh: &Mesh, boundary: &Boundary, model: &Model) -> Vec<Vec<EdgeId>> {
         let mut rows: BTreeMap<EdgeId, Vec<(f64, NodeId)>> = BTreeMap::new();
         for (n, edges) in self.edges.iter().enumerate() {
             let Ok(node) = NodeId::new(n) else { continue };

@@ -22,7 +22,7 @@ use cad::{Aabb, FaceId, Model};
 
 use super::{Boundary, Claims, Joints, sides};
 use crate::mesh::Mesh;
-use incidence::Incidence;
+pub use incidence::Incidence;
 
 /// Default tolerance, as a share of the mesh's box.
 pub const ON_CAD: f64 = 1e-5;
