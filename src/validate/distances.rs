@@ -72,21 +72,21 @@ pub(super) fn check(
     for links in models {
         for sheet in &links.sheets {
             for link in &sheet.faces {
-                let nodes = linked.nodes(link.run.indices.iter().copied());
+                let nodes = linked.nodes(link.run.faces().filter(|face| linked.face(face).is_some()).flatten().copied());
                 let name = called("sheet", sheet.name());
                 sheets.extend(ruler.measure(&name, link.target.as_deref(), &nodes, link.run.origin, findings));
             }
         }
         for string in &links.strings {
             for link in &string.edges {
-                let nodes = linked.nodes(link.run.indices.iter().copied());
+                let nodes = linked.nodes(link.run.edges().filter(|ends| linked.edge(*ends).is_some()).flatten());
                 let name = called("string", string.name());
                 strings.extend(ruler.measure(&name, link.target.as_deref(), &nodes, link.run.origin, findings));
             }
         }
         for link in &links.points {
             let nodes = linked.nodes(link.run.indices.iter().copied());
-            points.extend(ruler.measure("points", link.target.as_deref(), &nodes, link.run.origin, findings));
+            points.extend(ruler.measure("MeshPointReference", link.target.as_deref(), &nodes, link.run.origin, findings));
         }
     }
     [sheets, strings, points]
@@ -128,8 +128,8 @@ impl Ruler<'_> {
         if off > 0 {
             findings.push(Code::OffGeometry, origin, || {
                 let Measured { points, node, farthest, on, .. } = &measured;
-                let at = places[worst];
-                format!("{off} of the {points} points of {name} are off {on}: node {node} at {at} by {farthest:.3e}")
+                let [x, y, z] = places[worst].to_array();
+                format!("{off} of the {points} points of {name} are off {on}: node {node} at ({x:.6}, {y:.6}, {z:.6}) by {farthest:.3e}")
             });
         }
         Some(measured)

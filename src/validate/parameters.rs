@@ -72,36 +72,39 @@ fn tell(vertex: &ParamVertex, entity: EntityId, distance: f64, findings: &mut Fi
 }
 
 /// Vertices that do not evaluate to their points, where most do; `None` where the parametrisation is another.
-fn misplaced<'a>(
-    vertices: &[Vertex<'a>],
+fn misplaced<'a, 'b>(
+    vertices: &'b [Vertex<'a>],
     entity: EntityId,
     model: &Model,
     tolerance: f64,
 ) -> Option<Vec<(&'a ParamVertex, f64)>> {
     let group = group(model, &[entity])?.ok()?;
-    let feet: Vec<Foot> = vertices.iter().map(|vertex| group.closest(vertex.place, None)).collect();
+    // A point off the CAD is told of otherwise, and has no parameters.
+    let on_entity = |vertex: &'b Vertex<'a>| {
+        let foot = group.closest(vertex.place, None);
+        (foot.distance <= tolerance).then_some((vertex, foot))
+    };
+    let (vertices, feet): (Vec<&Vertex<'a>>, Vec<Foot>) = vertices.iter().filter_map(on_entity).unzip();
     let same = |given: [f64; 2]| given;
-    judge(vertices, &feet, entity, model, tolerance, &same).or_else(|| {
-        let maps = [fit(vertices, &feet, 0)?, fit(vertices, &feet, 1)?];
+    judge(&vertices, entity, model, tolerance, &same).or_else(|| {
+        let maps = [fit(&vertices, &feet, 0)?, fit(&vertices, &feet, 1)?];
         let moved = |given: [f64; 2]| std::array::from_fn(|axis| maps[axis][0] * given[axis] + maps[axis][1]);
-        judge(vertices, &feet, entity, model, tolerance, &moved)
+        judge(&vertices, entity, model, tolerance, &moved)
     })
 }
 
 fn judge<'a>(
-    vertices: &[Vertex<'a>],
-    feet: &[Foot],
+    vertices: &[&Vertex<'a>],
     entity: EntityId,
     model: &Model,
     tolerance: f64,
     map: &dyn Fn([f64; 2]) -> [f64; 2],
 ) -> Option<Vec<(&'a ParamVertex, f64)>> {
     let mut wrong = Vec::new();
-    for (vertex, foot) in vertices.iter().zip(feet) {
+    for vertex in vertices {
         let at = model.evaluate(entity, map(vertex.given)).map(|found| found.point().distance(vertex.place));
         let distance = at.unwrap_or(f64::INFINITY);
-        // A point off the CAD is told of otherwise.
-        if distance > tolerance.max(2.0 * foot.distance) {
+        if distance > 2.0 * tolerance {
             wrong.push((vertex.vertex, distance));
         }
     }
@@ -109,7 +112,7 @@ fn judge<'a>(
 }
 
 /// Factor and offset that take most given parameters of one axis to those of the feet: medians over pairs.
-fn fit(vertices: &[Vertex<'_>], feet: &[Foot], axis: usize) -> Option<[f64; 2]> {
+fn fit(vertices: &[&Vertex<'_>], feet: &[Foot], axis: usize) -> Option<[f64; 2]> {
     let pairs: Vec<[f64; 2]> =
         vertices.iter().zip(feet).map(|(vertex, foot)| [vertex.given[axis], foot.parameters[axis]]).collect();
     if pairs.len() < ENOUGH {

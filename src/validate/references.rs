@@ -50,7 +50,10 @@ impl Geometry {
         }
         for reference in &file.references {
             match model.resolve(&reference.reference) {
-                Ok(found) => drop(self.entities.insert(reference.id, found)),
+                Ok(found) => {
+                    // Of doubled ids the first holds.
+                    self.entities.entry(reference.id).or_insert(found);
+                }
                 Err(error) => findings.push(Code::UnknownReference, reference.origin, || error.to_string()),
             }
         }

@@ -1,0 +1,167 @@
+//! `sagitta link`: what is inferred without entity tags is what the generator knew.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[macro_use]
+mod common;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use common::{fixture, json, sagitta};
+use linkage_schema::{Entity, Resolution, resolve};
+use sagitta::formats::{self, WriteOptions};
+use sagitta::mesh::{EntityKey, Mesh};
+
+const CASES: [&str; 6] = ["weeble", "weeble_hybrid", "wing_sharp", "sphere_shell", "cylinder_bl", "torus"];
+
+/// The mesh as a generator without CAD numbers writes it: one entity a physical name, no points or lines.
+fn without_tags(mesh: &mut Mesh) {
+    let mut names: BTreeMap<Vec<String>, i32> = BTreeMap::new();
+    let keys: BTreeSet<EntityKey> = mesh.blocks.iter().map(|block| block.entity).collect();
+    // Far from any number of a CAD entity.
+    let key = |names: &mut BTreeMap<Vec<String>, i32>, key: EntityKey| {
+        let count = names.len() as i32;
+        EntityKey::new(key.dimension, *names.entry(mesh.names_of(key)).or_insert(9001 + count))
+    };
+    let new: BTreeMap<EntityKey, EntityKey> = keys.into_iter().map(|old| (old, key(&mut names, old))).collect();
+    mesh.blocks.retain(|block| block.cell.dimension() >= 2);
+    mesh.blocks.iter_mut().for_each(|block| block.entity = new[&block.entity]);
+    let mut seen = BTreeSet::new();
+    mesh.entities.retain_mut(|entity| {
+        let Some(&key) = new.get(&entity.key).filter(|key| key.dimension >= 2) else { return false };
+        entity.key = key;
+        entity.boundary.clear();
+        seen.insert(key)
+    });
+    mesh.node_entities.fill(None);
+    mesh.node_parameters.clear();
+    mesh.periodic.clear();
+}
+
+/// Items by their nodes, each with the names of its CAD entities.
+type Links = BTreeMap<Vec<u32>, BTreeSet<String>>;
+
+fn names(entities: &[Entity<'_>]) -> BTreeSet<String> {
+    entities.iter().map(|entity| entity.reference.to_owned()).collect()
+}
+
+fn sorted(indices: &[u32]) -> Vec<u32> {
+    let mut key = indices.to_vec();
+    key.sort_unstable();
+    key
+}
+
+/// Faces, edges and points of a document; strings on seams and degenerate edges, which the generator marks, left out.
+fn links(resolution: &Resolution<'_>) -> [Links; 3] {
+    let [mut faces, mut edges, mut points]: [Links; 3] = Default::default();
+    let feature = |entity: &Entity<'_>| !matches!(entity.name, Some("seam" | "degenerate"));
+    for model in &resolution.models {
+        for link in model.sheets.iter().flat_map(|sheet| &sheet.faces) {
+            link.run.faces().for_each(|face| drop(faces.insert(sorted(face), names(link.entities()))));
+        }
+        for link in model.strings.iter().flat_map(|string| &string.edges) {
+            if link.entities().iter().all(feature) {
+                link.run.edges().for_each(|edge| drop(edges.insert(sorted(&edge), names(link.entities()))));
+            }
+        }
+        for link in &model.points {
+            link.run.indices.iter().for_each(|&index| drop(points.insert(vec![index], names(link.entities()))));
+        }
+    }
+    [faces, edges, points]
+}
+
+/// Links a mesh and returns its folder, the written file and the report.
+fn link(case: &Path, mesh: &Mesh, more: &[&str]) -> (tempfile::TempDir, PathBuf, serde_json::Value) {
+    let dir = tempfile::tempdir().unwrap();
+    let [file, output, report] = ["mesh.msh", "link.xml", "report.json"].map(|name| dir.path().join(name));
+    formats::write(&file, mesh, &WriteOptions::default()).unwrap();
+    let cad = case.with_extension("step");
+    let arguments = args!["link", file, "--cad", cad, "-o", output, "--report", report];
+    let outcome = sagitta(arguments.into_iter().chain(more.iter().map(std::ffi::OsString::from)));
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    let validation = sagitta(args!["validate", output, "--mesh", file, "--cad", cad, "--strict"]);
+    assert_eq!(validation.code, Some(0), "{}: {}", case.display(), validation.stdout);
+    let report = json(&report);
+    (dir, output, report)
+}
+
+/// Checks a case and returns the counts of faces: all, undecided.
+fn compare(case: &Path) -> [usize; 2] {
+    let name = case.display();
+    let mut mesh = formats::read(&case.with_extension("msh")).unwrap();
+    let parts: BTreeSet<EntityKey> = mesh.blocks_of(2).map(|(_, block)| block.entity).collect();
+    without_tags(&mut mesh);
+    let merged: BTreeSet<EntityKey> = mesh.blocks_of(2).map(|(_, block)| block.entity).collect();
+    assert!(merged.len() <= parts.len() && merged.iter().all(|key| key.tag > 9000), "{name}");
+    let (_dir, output, report) = link(case, &mesh, &[]);
+    assert_eq!(report["source"], "geometry");
+    let own = linkage_schema::read_path(&output).unwrap().accept().unwrap();
+    let generators = linkage_schema::read_path(&case.with_extension("meshlink.xml")).unwrap().accept().unwrap();
+    let [own_faces, own_edges, own_points] = links(&resolve(&own));
+    let [faces, edges, points] = links(&resolve(&generators));
+    let wrong: Vec<_> = own_faces.iter().filter(|(face, on)| faces.get(*face) != Some(on)).collect();
+    assert!(wrong.is_empty(), "{name}: {} faces wrong: {:?}", wrong.len(), &wrong[..wrong.len().min(5)]);
+    let undecided = faces.len() - own_faces.len();
+    assert!((undecided as f64) < 0.005 * faces.len() as f64, "{name}: {undecided} of {} undecided", faces.len());
+    assert_eq!(own_edges, edges, "{name}: edges");
+    let strays: Vec<_> = own_points.iter().filter(|(point, on)| points.get(*point) != Some(on)).collect();
+    assert!(strays.is_empty(), "{name}: points {strays:?}");
+    // The generator names vertices on seams too; every vertex at which edges meet or end must be there.
+    let mut ends: BTreeMap<u32, BTreeSet<&BTreeSet<String>>> = BTreeMap::new();
+    for (edge, on) in &edges {
+        for &end in edge {
+            ends.entry(end).or_default().insert(on);
+        }
+    }
+    for (corner, _) in ends.iter().filter(|(_, meeting)| meeting.len() > 1) {
+        assert!(own_points.contains_key(&vec![*corner]), "{name}: no vertex at node {corner}");
+    }
+    [faces.len(), undecided]
+}
+
+#[test]
+fn inferred_without_tags_is_what_the_generator_knew() {
+    for case in CASES {
+        let [all, undecided] = compare(&fixture(case, "msh").with_extension(""));
+        assert_eq!(undecided, 0, "{case}: of {all}");
+    }
+}
+
+/// All cases of `make_cases.py` that lie in the folders below `SAGITTA_CASES`.
+#[test]
+fn so_it_is_for_every_case_that_was_made() {
+    let Some(folder) = std::env::var_os("SAGITTA_CASES").filter(|folder| !folder.is_empty()) else {
+        common::warn("SAGITTA_CASES is not set: only the fixtures are compared");
+        return;
+    };
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir()) {
+        for file in std::fs::read_dir(entry).unwrap().map(|file| file.unwrap().path()) {
+            if file.extension().is_some_and(|e| e == "msh") && file.with_extension("meshlink.xml").exists() {
+                let [all, undecided] = compare(&file.with_extension(""));
+                println!("{}: {undecided} of {all} faces undecided, 0 wrong", file.display());
+                count += 1;
+            }
+        }
+    }
+    assert!(count > 0, "SAGITTA_CASES holds no case");
+}
+
+#[test]
+fn tags_are_used_where_they_hold() {
+    let case = fixture("weeble", "msh").with_extension("");
+    let mesh = formats::read(&case.with_extension("msh")).unwrap();
+    assert_eq!(link(&case, &mesh, &[]).2["source"], "the mesh's entity tags");
+    assert_eq!(link(&case, &mesh, &["--ignore-tags"]).2["source"], "geometry");
+}
+
+#[test]
+fn a_mesh_of_other_cad_is_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let output = dir.path().join("link.xml");
+    let outcome = sagitta(args!["link", fixture("torus", "msh"), "--cad", fixture("cylinder_bl", "step"), "-o", output]);
+    assert_eq!(outcome.code, Some(2), "{}", outcome.stdout);
+    assert!(outcome.stderr.contains("torus.msh") && outcome.stderr.contains("--tolerance"), "{}", outcome.stderr);
+    assert!(!output.exists());
+}
