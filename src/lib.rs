@@ -46,6 +46,7 @@ pub mod element;
 pub mod elevate;
 pub mod formats;
 pub mod mesh;
+pub mod periodic;
 pub mod perturb;
 pub mod pipeline;
 pub mod project;

@@ -14,6 +14,7 @@ use crate::element::Order;
 use crate::elevate::{Elevated, elevate};
 use crate::formats;
 use crate::mesh::{Mesh, TooMany};
+use crate::periodic::Ties;
 use crate::perturb::perturb;
 use crate::project::{CadConstraint, Projected, project};
 use crate::retreat::{GivenUp, retreat};
@@ -175,23 +176,30 @@ pub struct Curved {
 pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineError> {
     let mut clock = Clock::new(observer);
     clock.step(Step::Read);
-    let linear = read_linear(&job.mesh)?;
+    let mut linear = read_linear(&job.mesh)?;
     let model = read_model(job)?;
 
     clock.step(Step::Associate);
     let boundary = Boundary::new(&linear);
     let (tied, cad) = tie(job, &linear, &boundary, model)?;
-    let association = tied.association;
+    let mut association = tied.association;
+    // The linkage file may know of pairs that the mesh file does not.
+    let known: Vec<_> = linear.periodic.iter().map(|pair| pair.slave).collect();
+    linear.periodic.extend(tied.claims.periodic.into_iter().filter(|pair| !known.contains(&pair.slave)));
 
     clock.step(Step::Elevate);
     let mut elevated =
         elevate(&linear, job.order).map_err(|cause| PipelineError::TooMany { mesh: job.mesh.clone(), cause })?;
+    let (ties, notes) = Ties::new(&mut elevated, &boundary, job.freeze_linear);
+    association.notes.extend(notes);
 
     clock.step(Step::Project);
-    let projected = project(&elevated, &boundary, &association, job.freeze_linear);
+    let mut projected = project(&elevated, &boundary, &association, job.freeze_linear);
+    ties.carry(&elevated.mesh.points, &mut projected.displacement);
 
     clock.step(Step::Perturb);
-    let mut places = perturb(&elevated, &boundary, &association, &projected);
+    let mut places = perturb(&elevated, &boundary, &association, &projected, &ties);
+    ties.apply(&mut places);
 
     clock.step(Step::Smooth);
     let straight = elevated.mesh.points.clone();
@@ -200,6 +208,7 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
         &association,
         &straight,
         &projected,
+        &ties,
         elevated.linear_nodes,
         job.freeze_walls,
         job.freeze_linear,
@@ -211,7 +220,7 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
     clock.step(Step::Certify);
     let Elevated { mut mesh, linear_nodes, .. } = elevated;
     let first = certify::mesh(&mesh, Some(&straight[..linear_nodes]), &certify::Settings::default());
-    let (given_up, certificate) = retreat(&mut mesh, &straight, linear_nodes, &boundary, &association, first);
+    let (given_up, certificate) = retreat(&mut mesh, &straight, linear_nodes, &boundary, &association, &ties, first);
     if !given_up.is_empty() {
         smoothed.survey(&Problem::new(&mesh, &straight), &mesh.points, job.smoothing.survey_factor);
     }

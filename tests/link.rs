@@ -160,7 +160,8 @@ fn tags_are_used_where_they_hold() {
 fn a_mesh_of_other_cad_is_refused() {
     let dir = tempfile::tempdir().unwrap();
     let output = dir.path().join("link.xml");
-    let outcome = sagitta(args!["link", fixture("torus", "msh"), "--cad", fixture("cylinder_bl", "step"), "-o", output]);
+    let outcome =
+        sagitta(args!["link", fixture("torus", "msh"), "--cad", fixture("cylinder_bl", "step"), "-o", output]);
     assert_eq!(outcome.code, Some(2), "{}", outcome.stdout);
     assert!(outcome.stderr.contains("torus.msh") && outcome.stderr.contains("--tolerance"), "{}", outcome.stderr);
     assert!(!output.exists());

@@ -69,7 +69,10 @@ fn good_files_are_clean() {
             };
             assert!(sum("faces") > 0 && sum("faces") == sum("linked"), "{case}: {:#}", validation.json["coverage"]);
             let sheets = validation.json["sheets"].as_array().unwrap();
-            assert!(!sheets.is_empty() && sheets.iter().all(|sheet| sheet["farthest"].as_f64().unwrap() < 1e-9), "{case}");
+            assert!(
+                !sheets.is_empty() && sheets.iter().all(|sheet| sheet["farthest"].as_f64().unwrap() < 1e-9),
+                "{case}"
+            );
         }
     }
 }
@@ -97,130 +100,217 @@ const SEAM_STRING: &str = "name=\"edge-5 (seam)\"";
 
 /// The defects of the list, and more.
 const DEFECTS: &[Defect] = &[
-    defect("dangling gref", "name=\"wall/face-2\" gref=\"2\"", "name=\"wall/face-2\" gref=\"404\"", &[(
-        Code::DanglingReference,
-        "gref=\"404\"",
-    )]),
+    defect(
+        "dangling gref",
+        "name=\"wall/face-2\" gref=\"2\"",
+        "name=\"wall/face-2\" gref=\"404\"",
+        &[(Code::DanglingReference, "gref=\"404\"")],
+    ),
     defect("dangling aref", "aref=\"4\"", "aref=\"44\"", &[(Code::DanglingReference, "aref=\"44\"")]),
-    defect("dangling member", "name=\"wall\">2 3 4<", "name=\"wall\">2 3 44<", &[(Code::DanglingReference, ">2 3 44<")]),
-    defect("duplicate gid", "gid=\"3\" ref=\"face-3\"", "gid=\"2\" ref=\"face-3\"", &[
-        (Code::DuplicateId, "ref=\"face-3\""),
-        (Code::DanglingReference, "<GeometryGroup"),
-        (Code::DanglingReference, "name=\"wall/face-3\""),
-        (Code::DanglingReference, "gref=\"3\" dim"),
-    ]),
-    defect("duplicate attid", "attid=\"3\"", "attid=\"2\"", &[
-        (Code::DuplicateId, "name=\"model size\""),
-        (Code::DanglingReference, "<AttributeGroup"),
-    ]),
-    defect("group where an entity is needed", "vref=\"207\" gref=\"2\"", "vref=\"207\" gref=\"21\"", &[(
-        Code::GroupAsEntity,
-        "vref=\"207\"",
-    )]),
+    defect(
+        "dangling member",
+        "name=\"wall\">2 3 4<",
+        "name=\"wall\">2 3 44<",
+        &[(Code::DanglingReference, ">2 3 44<")],
+    ),
+    defect(
+        "duplicate gid",
+        "gid=\"3\" ref=\"face-3\"",
+        "gid=\"2\" ref=\"face-3\"",
+        &[
+            (Code::DuplicateId, "ref=\"face-3\""),
+            (Code::DanglingReference, "<GeometryGroup"),
+            (Code::DanglingReference, "name=\"wall/face-3\""),
+            (Code::DanglingReference, "gref=\"3\" dim"),
+        ],
+    ),
+    defect(
+        "duplicate attid",
+        "attid=\"3\"",
+        "attid=\"2\"",
+        &[(Code::DuplicateId, "name=\"model size\""), (Code::DanglingReference, "<AttributeGroup")],
+    ),
+    defect(
+        "group where an entity is needed",
+        "vref=\"207\" gref=\"2\"",
+        "vref=\"207\" gref=\"21\"",
+        &[(Code::GroupAsEntity, "vref=\"207\"")],
+    ),
     defect(
         "nested group",
         "<GeometryGroup gid=\"21\" name=\"wall\">2 3 4</GeometryGroup>",
         "<GeometryGroup gid=\"21\" name=\"wall\">2 3 4</GeometryGroup>\n<GeometryGroup gid=\"22\">21</GeometryGroup>",
         &[(Code::NestedGroup, "gid=\"22\"")],
     ),
-    defect("count too large", "count=\"151\"", "count=\"152\"", &[
-        (Code::CountTooLarge, "count=\"152\""),
-        (Code::StrayVertex, "vref=\"207\""),
-        (Code::StringWithoutSheet, SEAM_STRING),
-    ]),
-    defect("count of 1e9", "count=\"57\"", "count=\"1000000000\"", &[
-        (Code::CountTooLarge, "count=\"1000000000\""),
-        (Code::StrayVertex, "vref=\"326\""),
-        (Code::StringWithoutSheet, "name=\"edge-9 (seam)\""),
-    ]),
-    defect("count too small", SEAM, "<MeshEdge etype=\"Edge2\" count=\"4\">3 16 16 17 17 18 18 19 19 4<", &[(
-        Code::ExtraContent,
-        "count=\"4\">3 16",
-    )]),
-    defect("index 0", ">3 16 16 17", ">3 16 0 17", &[(Code::BadIndex, ">3 16 0 17"), (Code::BrokenString, SEAM_STRING)]),
-    defect("index beyond the mesh", ">3 16 16 17 17 18 18 19 19 4<", ">3 16 16 17 17 18 18 19 19 400000<", &[
-        (Code::IndexBeyondMesh, "400000"),
-    ]),
-    defect("not a number", ">3 16 16 17", ">3 16 16 x", &[(Code::BadIndex, "16 x"), (Code::StrayVertex, "vref=\"16\" gref=\"9\"")]),
-    defect("unknown etype", FIRST_RUN, "<MeshFace etype=\"Tri6\" count=\"151\">", &[
-        (Code::UnknownType, "Tri6"),
-        (Code::StrayVertex, "vref=\"207\""),
-        (Code::StringWithoutSheet, SEAM_STRING),
-    ]),
-    defect("unknown format", FIRST_RUN, "<MeshFace etype=\"Tri3\" format=\"lzw\" count=\"151\">", &[
-        (Code::UnknownFormat, "lzw"),
-        (Code::StrayVertex, "vref=\"207\""),
-        (Code::StringWithoutSheet, SEAM_STRING),
-    ]),
-    defect("broken base64", FIRST_RUN, "<MeshFace etype=\"Tri3\" format=\"base64\" count=\"151\">", &[
-        (Code::BadBase64, "base64"),
-        (Code::StrayVertex, "vref=\"207\""),
-        (Code::StringWithoutSheet, SEAM_STRING),
-    ]),
-    defect("string with a gap", ">3 16 16 17 17 18", ">3 16 17 17 17 18", &[
-        (Code::DegenerateCell, "16 17 17 17"),
-        (Code::EdgeNotInMesh, "16 17 17 17"),
-        (Code::BrokenString, SEAM_STRING),
-    ]),
-    defect("string that lacks an edge", SEAM, "<MeshEdge etype=\"Edge2\" count=\"4\">3 16 17 18 18 19 19 4<", &[(
-        Code::BrokenString,
-        SEAM_STRING,
-    )]),
-    defect("edge that is none", ">3 16 16 17 17 18", ">3 16 16 18 18 17 17 18", &[
-        (Code::ExtraContent, "16 16 18"),
-        (Code::EdgeNotInMesh, "16 16 18"),
-        (Code::BrokenString, SEAM_STRING),
-    ]),
+    defect(
+        "count too large",
+        "count=\"151\"",
+        "count=\"152\"",
+        &[
+            (Code::CountTooLarge, "count=\"152\""),
+            (Code::StrayVertex, "vref=\"207\""),
+            (Code::StringWithoutSheet, SEAM_STRING),
+        ],
+    ),
+    defect(
+        "count of 1e9",
+        "count=\"57\"",
+        "count=\"1000000000\"",
+        &[
+            (Code::CountTooLarge, "count=\"1000000000\""),
+            (Code::StrayVertex, "vref=\"326\""),
+            (Code::StringWithoutSheet, "name=\"edge-9 (seam)\""),
+        ],
+    ),
+    defect(
+        "count too small",
+        SEAM,
+        "<MeshEdge etype=\"Edge2\" count=\"4\">3 16 16 17 17 18 18 19 19 4<",
+        &[(Code::ExtraContent, "count=\"4\">3 16")],
+    ),
+    defect(
+        "index 0",
+        ">3 16 16 17",
+        ">3 16 0 17",
+        &[(Code::BadIndex, ">3 16 0 17"), (Code::BrokenString, SEAM_STRING)],
+    ),
+    defect(
+        "index beyond the mesh",
+        ">3 16 16 17 17 18 18 19 19 4<",
+        ">3 16 16 17 17 18 18 19 19 400000<",
+        &[(Code::IndexBeyondMesh, "400000")],
+    ),
+    defect(
+        "not a number",
+        ">3 16 16 17",
+        ">3 16 16 x",
+        &[(Code::BadIndex, "16 x"), (Code::StrayVertex, "vref=\"16\" gref=\"9\"")],
+    ),
+    defect(
+        "unknown etype",
+        FIRST_RUN,
+        "<MeshFace etype=\"Tri6\" count=\"151\">",
+        &[(Code::UnknownType, "Tri6"), (Code::StrayVertex, "vref=\"207\""), (Code::StringWithoutSheet, SEAM_STRING)],
+    ),
+    defect(
+        "unknown format",
+        FIRST_RUN,
+        "<MeshFace etype=\"Tri3\" format=\"lzw\" count=\"151\">",
+        &[(Code::UnknownFormat, "lzw"), (Code::StrayVertex, "vref=\"207\""), (Code::StringWithoutSheet, SEAM_STRING)],
+    ),
+    defect(
+        "broken base64",
+        FIRST_RUN,
+        "<MeshFace etype=\"Tri3\" format=\"base64\" count=\"151\">",
+        &[(Code::BadBase64, "base64"), (Code::StrayVertex, "vref=\"207\""), (Code::StringWithoutSheet, SEAM_STRING)],
+    ),
+    defect(
+        "string with a gap",
+        ">3 16 16 17 17 18",
+        ">3 16 17 17 17 18",
+        &[
+            (Code::DegenerateCell, "16 17 17 17"),
+            (Code::EdgeNotInMesh, "16 17 17 17"),
+            (Code::BrokenString, SEAM_STRING),
+        ],
+    ),
+    defect(
+        "string that lacks an edge",
+        SEAM,
+        "<MeshEdge etype=\"Edge2\" count=\"4\">3 16 17 18 18 19 19 4<",
+        &[(Code::BrokenString, SEAM_STRING)],
+    ),
+    defect(
+        "edge that is none",
+        ">3 16 16 17 17 18",
+        ">3 16 16 18 18 17 17 18",
+        &[(Code::ExtraContent, "16 16 18"), (Code::EdgeNotInMesh, "16 16 18"), (Code::BrokenString, SEAM_STRING)],
+    ),
     defect("missing attribute", "name=\"wall/face-2\" gref=\"2\"", "name=\"wall/face-2\"", &[]),
-    defect("missing gid", "<GeometryReference gid=\"9\" ref", "<GeometryReference ref", &[
-        (Code::MissingAttribute, "ref=\"edge-5\""),
-        (Code::DanglingReference, SEAM_STRING),
-        (Code::DanglingReference, "gref=\"9\" dim"),
-    ]),
-    defect("missing vref", "<ParamVertex vref=\"207\"", "<ParamVertex", &[(Code::MissingAttribute, "<ParamVertex gref")]),
+    defect(
+        "missing gid",
+        "<GeometryReference gid=\"9\" ref",
+        "<GeometryReference ref",
+        &[
+            (Code::MissingAttribute, "ref=\"edge-5\""),
+            (Code::DanglingReference, SEAM_STRING),
+            (Code::DanglingReference, "gref=\"9\" dim"),
+        ],
+    ),
+    defect(
+        "missing vref",
+        "<ParamVertex vref=\"207\"",
+        "<ParamVertex",
+        &[(Code::MissingAttribute, "<ParamVertex gref")],
+    ),
     defect("reference to nothing", "ref=\"face-2\"", "ref=\"face-22\"", &[(Code::UnknownReference, "face-22")]),
     defect("not a reference", "ref=\"face-2\"", "ref=\"quilt 2\"", &[(Code::UnknownReference, "quilt 2")]),
-    defect("sheet on an edge", "name=\"wall/face-2\" gref=\"2\"", "name=\"wall/face-2\" gref=\"10\"", &[
-        (Code::WrongKind, "count=\"151\""),
-        (Code::OffGeometry, "count=\"151\""),
-    ]),
-    defect("string on a vertex", "name=\"edge-6\" gref=\"10\"", "name=\"edge-6\" gref=\"18\"", &[
-        (Code::WrongKind, "count=\"19\""),
-        (Code::OffGeometry, "count=\"19\""),
-    ]),
-    defect("sheet on another face", "name=\"wall/face-2\" gref=\"2\"", "name=\"wall/face-2\" gref=\"3\"", &[(
-        Code::OffGeometry,
-        "count=\"151\"",
-    )]),
-    defect("string on another edge", "name=\"edge-6\" gref=\"10\"", "name=\"edge-6\" gref=\"12\"", &[(
-        Code::OffGeometry,
-        "count=\"19\"",
-    )]),
-    defect("point at another vertex", "<MeshPointReference gref=\"18\" count=\"1\">4<", "<MeshPointReference gref=\"17\" count=\"1\">4<", &[(
-        Code::OffGeometry,
-        "gref=\"17\" count=\"1\">4<",
-    )]),
-    defect("parameters of another place", "vref=\"208\" gref=\"2\" dim=\"2\">2.8525", "vref=\"208\" gref=\"2\" dim=\"2\">1.8525", &[(
-        Code::WrongParameters,
-        "vref=\"208\"",
-    )]),
-    defect("entity bomb", "<MeshFile filename=\"weeble.msh\"", "<MeshFile filename=\"&lol9;\"", &[(
-        Code::Unreadable,
-        "&lol9;",
-    )]),
-    defect("another mesh file", "filename=\"weeble.msh\"", "filename=\"C:\\meshes\\other.msh\"", &[(
-        Code::OtherMeshFile,
-        "other.msh",
-    )]),
-    defect("another CAD file", "filename=\"weeble.step\"", "filename=\"other.step\"", &[(Code::OtherCadFile, "other.step")]),
-    defect("geometry that cannot be read", "filename=\"weeble.step\"", "filename=\"weeble.nmb\"", &[(
-        Code::UnreadableGeometry,
-        "weeble.nmb",
-    )]),
-    defect("wrong namespace", "xmlns=\"https://cadence.com\"", "xmlns=\"http://www.pointwise.com\"", &[(
-        Code::ForeignNamespace,
-        "<MeshLink",
-    )]),
+    defect(
+        "sheet on an edge",
+        "name=\"wall/face-2\" gref=\"2\"",
+        "name=\"wall/face-2\" gref=\"10\"",
+        &[(Code::WrongKind, "count=\"151\""), (Code::OffGeometry, "count=\"151\"")],
+    ),
+    defect(
+        "string on a vertex",
+        "name=\"edge-6\" gref=\"10\"",
+        "name=\"edge-6\" gref=\"18\"",
+        &[(Code::WrongKind, "count=\"19\""), (Code::OffGeometry, "count=\"19\"")],
+    ),
+    defect(
+        "sheet on another face",
+        "name=\"wall/face-2\" gref=\"2\"",
+        "name=\"wall/face-2\" gref=\"3\"",
+        &[(Code::OffGeometry, "count=\"151\"")],
+    ),
+    defect(
+        "string on another edge",
+        "name=\"edge-6\" gref=\"10\"",
+        "name=\"edge-6\" gref=\"12\"",
+        &[(Code::OffGeometry, "count=\"19\"")],
+    ),
+    defect(
+        "point at another vertex",
+        "<MeshPointReference gref=\"18\" count=\"1\">4<",
+        "<MeshPointReference gref=\"17\" count=\"1\">4<",
+        &[(Code::OffGeometry, "gref=\"17\" count=\"1\">4<")],
+    ),
+    defect(
+        "parameters of another place",
+        "vref=\"208\" gref=\"2\" dim=\"2\">2.8525",
+        "vref=\"208\" gref=\"2\" dim=\"2\">1.8525",
+        &[(Code::WrongParameters, "vref=\"208\"")],
+    ),
+    defect(
+        "entity bomb",
+        "<MeshFile filename=\"weeble.msh\"",
+        "<MeshFile filename=\"&lol9;\"",
+        &[(Code::Unreadable, "&lol9;")],
+    ),
+    defect(
+        "another mesh file",
+        "filename=\"weeble.msh\"",
+        "filename=\"C:\\meshes\\other.msh\"",
+        &[(Code::OtherMeshFile, "other.msh")],
+    ),
+    defect(
+        "another CAD file",
+        "filename=\"weeble.step\"",
+        "filename=\"other.step\"",
+        &[(Code::OtherCadFile, "other.step")],
+    ),
+    defect(
+        "geometry that cannot be read",
+        "filename=\"weeble.step\"",
+        "filename=\"weeble.nmb\"",
+        &[(Code::UnreadableGeometry, "weeble.nmb")],
+    ),
+    defect(
+        "wrong namespace",
+        "xmlns=\"https://cadence.com\"",
+        "xmlns=\"http://www.pointwise.com\"",
+        &[(Code::ForeignNamespace, "<MeshLink")],
+    ),
 ];
 
 #[test]
@@ -242,7 +332,8 @@ fn every_defect_is_found_at_its_line_and_nothing_else() {
         // Where a whole run or id is lost there is one finding for each thing that is left without it: the first is named in the table.
         let unwanted = got.iter().filter(|(code, _)| !wanted.iter().any(|(own, _)| own == code));
         problems.extend(unwanted.map(|(code, line)| format!("{name}: {code} at line {line} is a false alarm")));
-        let clean = wanted.iter().all(|(code, _)| Code::from_id(code).unwrap().severity() == linkage_schema::Severity::Note);
+        let clean =
+            wanted.iter().all(|(code, _)| Code::from_id(code).unwrap().severity() == linkage_schema::Severity::Note);
         assert_eq!(validation.code, i32::from(!clean), "{name}");
     }
     assert!(problems.is_empty(), "{}", problems.join("\n"));
@@ -316,10 +407,13 @@ fn a_file_that_is_off_by_one_is_named_as_such_and_else_as_good_as_before() {
 
 #[test]
 fn a_mesh_of_another_case_is_recognised() {
-    for (case, other) in [("weeble", "torus"), ("torus", "weeble"), ("cylinder_bl", "sphere_shell"), ("weeble", "weeble_hybrid")] {
+    for (case, other) in
+        [("weeble", "torus"), ("torus", "weeble"), ("cylinder_bl", "sphere_shell"), ("weeble", "weeble_hybrid")]
+    {
         let linkage = fixture(case, "meshlink.xml");
         let text = std::fs::read_to_string(&linkage).unwrap();
-        let validation = Validation::of(&linkage, &args!["--mesh", fixture(other, "msh"), "--cad", fixture(case, "step")]);
+        let validation =
+            Validation::of(&linkage, &args!["--mesh", fixture(other, "msh"), "--cad", fixture(case, "step")]);
         let wanted = [(Code::OtherMeshFile, "<MeshFile"), (Code::OtherMesh, "<MeshModelReference")];
         let wanted = wanted.map(|(code, needle)| (code.id().to_owned(), line_of(&text, needle)));
         assert_eq!(validation.found(), wanted, "{case} with the mesh of {other}");
@@ -338,7 +432,11 @@ fn broken_files_are_one_finding_at_their_place() {
     ] {
         let spoilt = Spoilt::new("weeble", "meshlink.xml", |_| text.to_owned());
         let validation = Validation::full("weeble", &spoilt.path());
-        assert_eq!((validation.found(), validation.code), (vec![(Code::Unreadable.id().to_owned(), line)], 1), "{text}");
+        assert_eq!(
+            (validation.found(), validation.code),
+            (vec![(Code::Unreadable.id().to_owned(), line)], 1),
+            "{text}"
+        );
     }
     for linkage in ["/nowhere/a.xml", "/"] {
         let outcome = sagitta(args!["validate", linkage]).expect(2);
@@ -403,7 +501,8 @@ fn the_other_side_of_a_thin_wing() {
     let sides = Validation::of(&swapped.path(), &loose);
     assert_eq!(sides.codes(), [Code::WrongSide.id()], "{:#}", sides.json["findings"]);
     let lines: Vec<u32> = sides.found().into_iter().map(|(_, line)| line).collect();
-    let runs: Vec<u32> = swapped.text.lines().zip(1..).filter(|(l, _)| l.contains("count=\"156\"")).map(|(_, n)| n).collect();
+    let runs: Vec<u32> =
+        swapped.text.lines().zip(1..).filter(|(l, _)| l.contains("count=\"156\"")).map(|(_, n)| n).collect();
     assert_eq!(lines, runs);
 }
 
@@ -452,7 +551,8 @@ fn another_unit_is_one_finding() {
 
 #[test]
 fn notes_count_only_when_strict_and_text_names_file_line_and_remedy() {
-    let spoilt = Spoilt::new("weeble", "meshlink.xml", |text| text.replace("filename=\"weeble.step\"", "filename=\"w.nmb\""));
+    let spoilt =
+        Spoilt::new("weeble", "meshlink.xml", |text| text.replace("filename=\"weeble.step\"", "filename=\"w.nmb\""));
     let plain = sagitta(args!["validate", spoilt.path()]).expect(0).stdout;
     sagitta(args!["validate", spoilt.path(), "--strict"]).expect(1);
     let start = format!("{}:{}:3: note ML509: ", spoilt.path().display(), line_of(&spoilt.text, "<GeometryFile"));
@@ -481,7 +581,11 @@ fn the_real_files_are_clean_and_their_defects_are_found() {
     let m6 = Path::new(&folder).join("oneraM6.xml");
     for file in [&m6, &Path::new(&folder).join("sphere_ml.xml")] {
         let validation = Validation::of(file, &[]);
-        assert_eq!((validation.codes(), validation.code), (vec![Code::UnreadableGeometry.id().to_owned()], 0), "{file:?}");
+        assert_eq!(
+            (validation.codes(), validation.code),
+            (vec![Code::UnreadableGeometry.id().to_owned()], 0),
+            "{file:?}"
+        );
     }
     let good = std::fs::read_to_string(&m6).unwrap();
     let dir = tempfile::tempdir().unwrap();

@@ -6,7 +6,7 @@ use cad::{EntityId, Model, ReferenceError};
 use linkage_schema::{Entity, ModelLinks};
 use rustc_hash::FxHashMap;
 
-use super::{Boundary, Claimed, Claims};
+use super::{Boundary, Claimed, Claims, NotPeriodic, periodic_records, periodic_sheets};
 use crate::mesh::{Mesh, NodeId};
 
 /// Why a linkage file could not be used with this mesh and CAD. Every variant names the file and the place.
@@ -46,6 +46,14 @@ pub enum LinkageError {
         /// The mesh's largest number.
         last: u64,
     },
+    /// A periodic pair that is none.
+    #[error("{place}: {cause}; correct the transform, or what it pairs")]
+    Periodic {
+        /// File, line and column.
+        place: String,
+        /// What does not correspond.
+        cause: NotPeriodic,
+    },
     /// A face that is no boundary face.
     #[error("{place}: {label} has a face with the nodes {nodes:?}, which is no boundary face of the mesh")]
     Face {
@@ -73,6 +81,13 @@ pub fn read_linkage(path: &Path, mesh: &Mesh, boundary: &Boundary, model: &Model
     let mut claims = Claims { trusted: names(&document, model.path()), ..Claims::default() };
     for links in &resolution.models {
         reader.model(links, &mut claims)?;
+    }
+    for pair in &resolution.pairs {
+        let Some(sheets) = periodic_sheets(pair, &resolution) else { continue };
+        let node = |index: u32| reader.numbers.get(&u64::from(index)).copied();
+        let records = periodic_records(pair, sheets, mesh, boundary, &node);
+        let place = || reader.place(pair.linkage.origin);
+        claims.periodic.extend(records.map_err(|cause| LinkageError::Periodic { place: place(), cause })?);
     }
     Ok(claims)
 }

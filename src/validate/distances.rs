@@ -72,7 +72,8 @@ pub(super) fn check(
     for links in models {
         for sheet in &links.sheets {
             for link in &sheet.faces {
-                let nodes = linked.nodes(link.run.faces().filter(|face| linked.face(face).is_some()).flatten().copied());
+                let nodes =
+                    linked.nodes(link.run.faces().filter(|face| linked.face(face).is_some()).flatten().copied());
                 let name = called("sheet", sheet.name());
                 sheets.extend(ruler.measure(&name, link.target.as_deref(), &nodes, link.run.origin, findings));
             }
@@ -86,7 +87,13 @@ pub(super) fn check(
         }
         for link in &links.points {
             let nodes = linked.nodes(link.run.indices.iter().copied());
-            points.extend(ruler.measure("MeshPointReference", link.target.as_deref(), &nodes, link.run.origin, findings));
+            points.extend(ruler.measure(
+                "MeshPointReference",
+                link.target.as_deref(),
+                &nodes,
+                link.run.origin,
+                findings,
+            ));
         }
     }
     [sheets, strings, points]
