@@ -7,8 +7,9 @@ mod common;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use common::{fixture, json, sagitta};
+use common::{fixture, json, root, sagitta};
 use linkage_schema::{Entity, Resolution, resolve};
+use sagitta::associate::Boundary;
 use sagitta::formats::{self, WriteOptions};
 use sagitta::mesh::{EntityKey, Mesh};
 
@@ -165,4 +166,125 @@ fn a_mesh_of_other_cad_is_refused() {
     assert_eq!(outcome.code, Some(2), "{}", outcome.stdout);
     assert!(outcome.stderr.contains("torus.msh") && outcome.stderr.contains("--tolerance"), "{}", outcome.stderr);
     assert!(!output.exists());
+}
+
+/// Four elements along the chord of a plate of 0.5 %, cambered by 12 %: the middles of its edges are nearer to the other side.
+#[test]
+fn a_thin_cambered_plate_goes_to_its_own_side() {
+    let case = root().join("fixtures/plate/plate");
+    let mesh = formats::read(&case.with_extension("msh")).unwrap();
+    let boundary = Boundary::new(&mesh);
+    let tags: Vec<EntityKey> = boundary.faces.iter().map(|face| face.entity).collect();
+    let mut untagged = mesh.clone();
+    without_tags(&mut untagged);
+    let (_dir, output, report) = link(&case, &untagged, &[]);
+    assert_eq!(report["undecided"].as_array().unwrap().len(), 0, "{report:#}");
+    let own = linkage_schema::read_path(&output).unwrap().accept().unwrap();
+    let [faces, edges, points] = links(&resolve(&own));
+    assert_eq!(faces.len(), boundary.faces.len());
+    for (face, entity) in tags.iter().enumerate() {
+        // Node numbers are places in the file, counted from 1.
+        let nodes: Vec<u32> = boundary.corners[face].iter().map(|n| n.index() as u32 + 1).collect();
+        assert_eq!(faces[&sorted(&nodes)], BTreeSet::from([format!("face-{}", entity.tag)]), "{nodes:?}");
+    }
+    let lines: usize = mesh.blocks_of(1).map(|(_, block)| block.tags.len()).sum();
+    let corners: usize = mesh.blocks_of(0).map(|(_, block)| block.tags.len()).sum();
+    assert_eq!((edges.len(), points.len()), (lines, corners));
+
+    // It is the trap that it claims to be: the sides are the faces with most elements but those of the box.
+    let at = |n: usize| mesh.points[n];
+    let arc = |x: f64, height: f64| {
+        let radius = (0.25 + height * height) / (2.0 * height);
+        height - radius + (radius * radius - (x - 0.5) * (x - 0.5)).sqrt()
+    };
+    let mut nearer_to_the_other = 0;
+    for &[a, b] in &boundary.edges {
+        let [a, b] = [at(a.index()), at(b.index())];
+        let off = |x: glam::DVec3, height: f64| (x.z - arc(x.x, height)).abs();
+        let on_upper = |x: glam::DVec3| (0.0..=1.0).contains(&x.x) && off(x, 0.12) < 1e-9;
+        if on_upper(a) && on_upper(b) && (a.x - b.x).abs() > 0.1 {
+            let middle = 0.5 * (a + b);
+            nearer_to_the_other += usize::from(off(middle, 0.115) < off(middle, 0.12));
+        }
+    }
+    assert!(nearer_to_the_other >= 10, "{nearer_to_the_other}");
+}
+
+/// Noise of 1e-6, and coordinates of single precision: validated, linked by geometry, curved, and the offsets told.
+#[test]
+fn linear_nodes_off_the_cad() {
+    let case = fixture("weeble", "msh").with_extension("");
+    let good = formats::read(&case.with_extension("msh")).unwrap();
+    let mut noise = 1_u64;
+    let mut next = || {
+        noise = noise.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (noise >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
+    };
+    let mut shaken = good.clone();
+    shaken.points.iter_mut().for_each(|x| *x += 1e-6 * glam::DVec3::new(next(), next(), next()));
+    let mut single = good.clone();
+    single.points.iter_mut().for_each(|x| *x = x.as_vec3().as_dvec3());
+    for (name, mesh, [least, most]) in [("noise 1e-6", shaken, [1e-7, 2e-6]), ("single precision", single, [1e-9, 1e-6])] {
+        let mut untagged = mesh.clone();
+        without_tags(&mut untagged);
+        let (dir, output, report) = link(&case, &untagged, &[]);
+        assert_eq!(report["undecided"].as_array().unwrap().len(), 0, "{name}: {report:#}");
+        let own = linkage_schema::read_path(&output).unwrap().accept().unwrap();
+        let generators = linkage_schema::read_path(&case.with_extension("meshlink.xml")).unwrap().accept().unwrap();
+        let ([faces, edges, _], [known, strings, _]) = (links(&resolve(&own)), links(&resolve(&generators)));
+        assert!(faces == known && edges == strings, "{name}");
+        let farthest = |list: &serde_json::Value, key: &str| {
+            list.as_array().unwrap().iter().map(|item| item[key].as_f64().unwrap()).fold(0.0, f64::max)
+        };
+        let told = farthest(&report["patches"], "farthest");
+        assert!((least..most).contains(&told), "{name}: {told:e}");
+        let [file, curved, figures] = ["mesh.msh", "curved.msh", "figures.json"].map(|file| dir.path().join(file));
+        let cad = case.with_extension("step");
+        let arguments = args!["curve", file, "--cad", cad, "--linkage", output, "--order", "2", "-q", "-o", curved, "--report", figures];
+        sagitta(arguments).expect(0);
+        let offset = farthest(&json(&figures)["patches"], "largest_offset");
+        assert!((offset / told - 1.0).abs() < 1e-3, "{name}: {offset:e} {told:e}");
+        let validated = sagitta(args!["validate", output, "--mesh", file, "--cad", cad, "--json"]).expect(0).stdout;
+        let validated: serde_json::Value = serde_json::from_str(&validated).unwrap();
+        assert!((farthest(&validated["sheets"], "farthest") / told - 1.0).abs() < 1e-3, "{name}");
+    }
+}
+
+#[test]
+fn patches_can_be_chosen_and_the_association_shown() {
+    let dir = tempfile::tempdir().unwrap();
+    let [report, output] = ["report.json", "out.msh"].map(|name| dir.path().join(name));
+    let (mesh, cad) = (fixture("weeble", "msh"), fixture("weeble", "step"));
+    let run = |more: &[&str]| {
+        let arguments = args!["curve", mesh, "--cad", cad, "--order", "2", "-q", "--report", report];
+        sagitta(arguments.into_iter().chain(more.iter().map(std::ffi::OsString::from)))
+    };
+    let tied = |report: &serde_json::Value| -> Vec<bool> {
+        report["patches"].as_array().unwrap().iter().map(|patch| !patch["on"].as_object().unwrap().is_empty()).collect()
+    };
+    for (options, wanted) in [
+        (&[][..], [true; 4]),
+        (&["--straight", "farfield"], [false, true, true, true]),
+        (&["--curve", "wall"], [false, true, true, true]),
+        (&["--curve", "surface 1,3"], [true, false, true, false]),
+    ] {
+        let told = run(&[options, &["--dry-run"]].concat()).expect(0).stdout;
+        assert_eq!(tied(&json(&report)), wanted, "{options:?} {told}");
+        assert!(told.starts_with("association by the mesh's entity tags"), "{told}");
+    }
+    let unknown = run(&["--curve", "wings", "--dry-run"]).expect(2).stderr;
+    assert!(unknown.contains("\"wings\"") && unknown.contains("farfield"), "{unknown}");
+    let path = output.to_str().unwrap();
+    run(&["--straight", "farfield", "-o", path]).expect(0);
+    let curved = formats::read(&output).unwrap();
+    let blocks = curved.blocks_of(2).filter(|(_, block)| curved.names_of(block.entity).contains(&"farfield".to_owned()));
+    for (_, block) in blocks {
+        for nodes in block.elements(curved.order) {
+            for (node, &[a, b]) in (block.cell.corner_count()..).zip(block.cell.edges()) {
+                let at = |n: usize| curved.points[nodes[n].index()];
+                assert!(at(node).distance(0.5 * (at(usize::from(a)) + at(usize::from(b)))) < 1e-12);
+            }
+        }
+    }
+    assert!(run(&["--order", "2"]).code == Some(2), "neither -o nor --dry-run");
 }
