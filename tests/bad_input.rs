@@ -258,7 +258,7 @@ fn tags_that_do_not_hold() {
         mesh.blocks.iter_mut().filter(|block| block.entity.dimension == 2).for_each(|b| b.entity.tag += 100);
     });
     // The association is found by geometry then, all of it, and the report says so.
-    for (mesh, patch) in [(swapped, "symmetry surface 2 "), (strange, "symmetry surface 105 ")] {
+    for (mesh, patch) in [(swapped, "farfield surface 2 "), (strange, "surface 105 ")] {
         let arguments = Input::mesh(&mesh).with(&["--dry-run"]).arguments(&place.output());
         let told = sagitta(arguments).expect(0).stdout;
         assert!(told.starts_with("association by geometry"), "{told}");

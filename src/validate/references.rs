@@ -8,7 +8,7 @@ use super::called;
 use crate::associate::same_file;
 
 /// Extensions and format names of geometry that OpenCASCADE cannot read.
-const FOREIGN: [&str; 6] = ["nmb", "egads", "x_t", "x_b", "prt", "catpart"];
+const FOREIGN: [&str; 5] = ["nmb", "x_t", "x_b", "prt", "catpart"];
 
 /// The CAD entities of every reference, where there is a CAD file that OpenCASCADE read.
 #[derive(Debug, Default)]
@@ -26,7 +26,8 @@ impl Geometry {
     ) -> Geometry {
         let mut geometry = Geometry::default();
         for file in &document.geometry_files {
-            if let Some(format) = unreadable(file, resolution) {
+            let given = model.is_some_and(|model| same_file(&file.filename, model.path()));
+            if let Some(format) = unreadable(file, resolution).filter(|_| !given) {
                 findings.push(Code::UnreadableGeometry, file.origin, || {
                     format!("{:?} is geometry in the format {format}, which OpenCASCADE cannot read", file.filename)
                 });
