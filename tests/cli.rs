@@ -15,7 +15,15 @@ use serde_json::Value;
 
 #[test]
 fn help_of_every_command_has_the_examples() {
-    for command in [&["--help"][..], &["curve", "--help"], &["check", "--help"], &["info", "--help"], &["link", "--help"], &["validate", "--help"], &["explain", "--help"]] {
+    for command in [
+        &["--help"][..],
+        &["curve", "--help"],
+        &["check", "--help"],
+        &["info", "--help"],
+        &["link", "--help"],
+        &["validate", "--help"],
+        &["explain", "--help"],
+    ] {
         let help = sagitta(command).expect(0);
         assert_eq!(help.stderr, "");
         assert!(examples(&help.stdout).len() >= 7, "{command:?}: {}", help.stdout);
@@ -52,7 +60,8 @@ fn run(commands: &[String], dir: &Path) {
     for command in commands {
         let command = command.split('#').next().unwrap();
         let place = |word: &str| -> OsString {
-            let made = [".msh", ".vtu", ".json", ".xml"].iter().any(|end| word.ends_with(end)) && !root().join(word).exists();
+            let made =
+                [".msh", ".vtu", ".json", ".xml"].iter().any(|end| word.ends_with(end)) && !root().join(word).exists();
             if made { dir.join(Path::new(word).file_name().unwrap()).into() } else { word.into() }
         };
         let arguments: Vec<OsString> = command.split_whitespace().map(place).collect();

@@ -46,7 +46,9 @@ fn the_m6_by_hand_and_wrong() {
     let line = line_of(&text, "<MeshString name=\"trailing edge\"");
     assert_eq!((code, found), (Some(1), vec![("ML503".to_owned(), line)]));
 
-    let (_, found, text) = m6_with(|text| text.replacen(&format!("{}4 5<", group("wing upper")), &format!("{}4<", group("wing upper")), 1));
+    let (_, found, text) = m6_with(|text| {
+        text.replacen(&format!("{}4 5<", group("wing upper")), &format!("{}4<", group("wing upper")), 1)
+    });
     assert!(found.contains(&("ML503".to_owned(), line_of(&text, &sheet("wing upper")))), "{found:?}");
 
     let (_, found, text) = m6_with(|text| {
@@ -67,20 +69,23 @@ fn the_m6_by_hand_and_wrong() {
     });
     assert_eq!((code, found), (Some(1), vec![("ML508".to_owned(), line_of(&text, &sheet("tip")))]));
 
-    // The tip is left out: its strings hang on the wing's sheets, only the wedge's is left without one.
+    // The tip is left out: most of its strings bound the wing's sheets too.
     let (_, found, text) = m6_with(|text| {
         let from = text.find(&sheet("tip")).unwrap();
         let to = from + text[from..].find("</MeshSheet>").unwrap() + "</MeshSheet>".len();
         format!("{}{}", &text[..from], &text[to..])
     });
-    assert_eq!(found, [("ML409".to_owned(), line_of(&text, "<MeshString name=\"tip wedge\""))]);
+    let bare = ["trailing edge", "tip wedge"]
+        .map(|name| ("ML409".to_owned(), line_of(&text, &format!("<MeshString name=\"{name}\""))));
+    assert_eq!(found, bare);
 }
 
 #[test]
 fn the_m6_is_inferred() {
     let dir = tempfile::tempdir().unwrap();
     let [output, report] = ["m6.xml", "m6.json"].map(|name| dir.path().join(name));
-    sagitta(args!["link", m6("msh"), "--cad", m6("egads"), "-o", output, "--ignore-tags", "--report", report]).expect(0);
+    sagitta(args!["link", m6("msh"), "--cad", m6("egads"), "-o", output, "--ignore-tags", "--report", report])
+        .expect(0);
     let told = common::json(&report);
     assert_eq!(told["undecided"].as_array().unwrap().len(), 0, "{told:#}");
     for patch in told["patches"].as_array().unwrap() {
@@ -124,10 +129,20 @@ fn bad_files_are_told_of_within_seconds_and_bounds() {
         ("html.xml", "<html><body>404</body></html>".to_owned(), false, "ML001"),
         ("cut.xml", good[..good.len() * 2 / 3].to_owned(), false, "ML001"),
         ("bomb.xml", with_bomb.replacen("name=\"wall\"", "name=\"&l9;\"", 1), false, "ML001"),
-        ("external.xml", good.replacen("<MeshLink ", &format!("{external}\n<MeshLink "), 1).replacen("\"wall\"", "\"&secret;\"", 1), false, "ML001"),
+        (
+            "external.xml",
+            good.replacen("<MeshLink ", &format!("{external}\n<MeshLink "), 1).replacen("\"wall\"", "\"&secret;\"", 1),
+            false,
+            "ML001",
+        ),
         ("doctype.xml", with_bomb, true, "ML109"),
         ("billion.xml", billion, false, "ML204"),
-        ("attribute.xml", good.replacen("name=\"wall\"", &format!("name=\"{}\"", "w".repeat(4 << 20)), 1), false, "ML001"),
+        (
+            "attribute.xml",
+            good.replacen("name=\"wall\"", &format!("name=\"{}\"", "w".repeat(4 << 20)), 1),
+            false,
+            "ML001",
+        ),
         ("nested.xml", nested, false, "ML001"),
         ("namespace.xml", good.replace("https://cadence.com", "http://www.pointwise.com"), true, "ML101"),
         ("numbers.xml", good.replacen("1 98 318 9\n", "1 98 99999999999999999999 9\n", 1), false, "ML203"),
@@ -135,7 +150,8 @@ fn bad_files_are_told_of_within_seconds_and_bounds() {
         ("zero.xml", good.replacen("1 98 318 9\n", "1 98 0 9\n", 1), false, "ML203"),
         ("empty.xml", String::new(), false, "ML001"),
     ];
-    let (mesh, cad, output) = (fixture("cylinder_bl", "msh"), fixture("cylinder_bl", "step"), dir.path().join("out.msh"));
+    let (mesh, cad, output) =
+        (fixture("cylinder_bl", "msh"), fixture("cylinder_bl", "step"), dir.path().join("out.msh"));
     let limit = Duration::from_secs(20);
     for (name, text, usable, code) in cases {
         assert_ne!(text, good, "{name}: nothing was spoilt");
@@ -147,10 +163,14 @@ fn bad_files_are_told_of_within_seconds_and_bounds() {
             let place = format!("{}:", path.display());
             let line = stdout.lines().find(|line| line.starts_with(&place) && line.contains(code));
             let line = line.unwrap_or_else(|| panic!("{name}: {code} is not in {stdout}"));
-            assert!(line.len() < 1000 && line[place.len()..].starts_with(|c: char| c.is_ascii_digit()), "{name}: {line}");
+            assert!(
+                line.len() < 1000 && line[place.len()..].starts_with(|c: char| c.is_ascii_digit()),
+                "{name}: {line}"
+            );
             assert!(!stdout.contains("root:"), "{name} tells of /etc/passwd");
         }
-        let mut curve = args!["curve", mesh, "--cad", cad, "--linkage", path, "--order", "2", "-q", "-o", output].to_vec();
+        let mut curve =
+            args!["curve", mesh, "--cad", cad, "--linkage", path, "--order", "2", "-q", "-o", output].to_vec();
         curve.extend(args!["--max-sweeps", "1"]);
         let (exit, _, stderr) = limited(&curve, limit);
         if usable {
@@ -164,17 +184,19 @@ fn bad_files_are_told_of_within_seconds_and_bounds() {
 
 #[test]
 fn large_files_take_seconds_and_little_memory() {
-    // 40 MB of good faces of a mesh that is not at hand.
+    // More than 30 MB of good faces of a mesh that is not at hand.
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("large.xml");
-    let mut text = String::from("<MeshLink version=\"1.0\" xmlns=\"https://cadence.com\"><MeshFile filename=\"a\"><MeshModelReference ref=\"m\">\n");
+    let mut text = String::from(
+        "<MeshLink version=\"1.0\" xmlns=\"https://cadence.com\"><MeshFile filename=\"a\"><MeshModelReference ref=\"m\">\n",
+    );
     text.push_str("<MeshSheet name=\"s\"><MeshFace etype=\"Tri3\" count=\"1700000\">\n");
     for face in 0..1_700_000_u32 {
         text.push_str(&format!("{} {} {}\n", face + 1, face + 2, face + 3));
     }
     text.push_str("</MeshFace></MeshSheet></MeshModelReference></MeshFile></MeshLink>\n");
     std::fs::write(&path, &text).unwrap();
-    assert!(text.len() > 36 << 20);
+    assert!(text.len() > 30 << 20);
     let (exit, stdout, stderr) = limited(&args!["validate", path], Duration::from_secs(20));
     assert_eq!(exit, Some(0), "{stdout}{stderr}");
 }
@@ -197,7 +219,8 @@ fn what_is_written_is_valid_by_both_schemas() {
             let arguments = args!["link", fixture(case, "msh"), "--cad", fixture(case, "step"), "-o", output];
             sagitta(arguments.into_iter().chain(more.iter().map(std::ffi::OsString::from))).expect(0);
             for schema in &schemas {
-                let verdict = Command::new("xmllint").args(["--noout", "--schema"]).arg(schema).arg(&output).output().unwrap();
+                let verdict =
+                    Command::new("xmllint").args(["--noout", "--schema"]).arg(schema).arg(&output).output().unwrap();
                 assert!(verdict.status.success(), "{case}: {}", String::from_utf8_lossy(&verdict.stderr));
             }
         }

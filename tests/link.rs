@@ -224,7 +224,9 @@ fn linear_nodes_off_the_cad() {
     shaken.points.iter_mut().for_each(|x| *x += 1e-6 * glam::DVec3::new(next(), next(), next()));
     let mut single = good.clone();
     single.points.iter_mut().for_each(|x| *x = x.as_vec3().as_dvec3());
-    for (name, mesh, [least, most]) in [("noise 1e-6", shaken, [1e-7, 2e-6]), ("single precision", single, [1e-9, 1e-6])] {
+    for (name, mesh, [least, most]) in
+        [("noise 1e-6", shaken, [1e-7, 2e-6]), ("single precision", single, [1e-9, 1e-6])]
+    {
         let mut untagged = mesh.clone();
         without_tags(&mut untagged);
         let (dir, output, report) = link(&case, &untagged, &[]);
@@ -240,7 +242,21 @@ fn linear_nodes_off_the_cad() {
         assert!((least..most).contains(&told), "{name}: {told:e}");
         let [file, curved, figures] = ["mesh.msh", "curved.msh", "figures.json"].map(|file| dir.path().join(file));
         let cad = case.with_extension("step");
-        let arguments = args!["curve", file, "--cad", cad, "--linkage", output, "--order", "2", "-q", "-o", curved, "--report", figures];
+        let arguments = args![
+            "curve",
+            file,
+            "--cad",
+            cad,
+            "--linkage",
+            output,
+            "--order",
+            "2",
+            "-q",
+            "-o",
+            curved,
+            "--report",
+            figures
+        ];
         sagitta(arguments).expect(0);
         let offset = farthest(&json(&figures)["patches"], "largest_offset");
         assert!((offset / told - 1.0).abs() < 1e-3, "{name}: {offset:e} {told:e}");
@@ -277,7 +293,8 @@ fn patches_can_be_chosen_and_the_association_shown() {
     let path = output.to_str().unwrap();
     run(&["--straight", "farfield", "-o", path]).expect(0);
     let curved = formats::read(&output).unwrap();
-    let blocks = curved.blocks_of(2).filter(|(_, block)| curved.names_of(block.entity).contains(&"farfield".to_owned()));
+    let blocks =
+        curved.blocks_of(2).filter(|(_, block)| curved.names_of(block.entity).contains(&"farfield".to_owned()));
     for (_, block) in blocks {
         for nodes in block.elements(curved.order) {
             for (node, &[a, b]) in (block.cell.corner_count()..).zip(block.cell.edges()) {
