@@ -168,6 +168,75 @@ fn a_mesh_of_other_cad_is_refused() {
     assert!(!output.exists());
 }
 
+/// Faces of IGES files are not sewn: every edge and vertex is there once for each face.
+#[test]
+fn unsewn_iges_is_as_good() {
+    for case in CASES {
+        let path = fixture(case, "msh").with_extension("");
+        let mut mesh = formats::read(&fixture(case, "msh")).unwrap();
+        without_tags(&mut mesh);
+        let (dir, output, report) = link(&path, &mesh, &[]);
+        let iges = dir.path().join("iges.xml");
+        let [file, cad] = [dir.path().join("mesh.msh"), fixture(case, "igs")];
+        sagitta(args!["link", file, "--cad", cad, "-o", iges, "--report", dir.path().join("iges.json")]).expect(0);
+        sagitta(args!["validate", iges, "--mesh", file, "--cad", cad, "--strict"]).expect(0);
+        let [step, iges] = [output, iges].map(|path| linkage_schema::read_path(&path).unwrap().accept().unwrap());
+        let ([faces, edges, points], [own_faces, own_edges, own_points]) =
+            (links(&resolve(&step)), links(&resolve(&iges)));
+        // Faces have the same numbers in both files, edges and vertices have not.
+        assert_eq!(own_faces, faces, "{case}");
+        let on = |links: &Links| links.keys().cloned().collect::<BTreeSet<_>>();
+        assert_eq!((on(&own_edges), on(&own_points)), (on(&edges), on(&points)), "{case}");
+        assert_eq!(json(&dir.path().join("iges.json"))["undecided"], report["undecided"]);
+    }
+}
+
+/// A linkage that calls its sheets by the mesh file's physical names.
+#[test]
+fn sheets_by_name_are_used() {
+    let dir = tempfile::tempdir().unwrap();
+    let [linkage, output, report] = ["link.xml", "out.msh", "report.json"].map(|name| dir.path().join(name));
+    let sheet = |name: &str, gref: u32| format!("<MeshSheetReference name=\"{name}\" ref=\"{name}\" gref=\"{gref}\"/>");
+    let text = format!(
+        "<MeshLink version=\"1.0\" xmlns=\"https://cadence.com\"><GeometryFile filename=\"torus.step\">\
+         <GeometryReference gid=\"1\" ref=\"face-1\"/><GeometryReference gid=\"2\" ref=\"face-2\"/></GeometryFile>\
+         <MeshFile filename=\"torus.msh\"><MeshModelReference ref=\"m\">{}{}{}</MeshModelReference></MeshFile></MeshLink>",
+        sheet("farfield", 1),
+        sheet("wall", 2),
+        sheet("nothing", 2)
+    );
+    std::fs::write(&linkage, text).unwrap();
+    let mut mesh = formats::read(&fixture("torus", "msh")).unwrap();
+    without_tags(&mut mesh);
+    let file = dir.path().join("torus.msh");
+    formats::write(&file, &mesh, &WriteOptions::default()).unwrap();
+    let cad = fixture("torus", "step");
+    let arguments = args![
+        "curve",
+        file,
+        "--cad",
+        cad,
+        "--order",
+        "2",
+        "-q",
+        "-o",
+        output,
+        "--linkage",
+        linkage,
+        "--report",
+        report
+    ];
+    let told = sagitta(arguments).expect(0).stdout;
+    assert!(told.contains("\"nothing\" by name"), "{told}");
+    let patches = &json(&report)["patches"];
+    assert!(
+        patches.as_array().unwrap().iter().all(|patch| patch["surfaces"].as_array().unwrap().len() == 1),
+        "{patches:#}"
+    );
+    let validated = sagitta(args!["validate", linkage, "--mesh", file, "--cad", cad]).expect(0).stdout;
+    assert!(validated.contains("note ML411") && validated.contains("clean, 1 notes"), "{validated}");
+}
+
 /// Four elements along the chord of a plate of 0.5 %, cambered by 12 %: the middles of its edges are nearer to the other side.
 #[test]
 fn a_thin_cambered_plate_goes_to_its_own_side() {

@@ -28,6 +28,8 @@ pub struct Claims {
     pub points: Vec<Claimed<NodeId>>,
     /// Pairs of mesh entities whose nodes correspond.
     pub periodic: Vec<Periodic>,
+    /// What could not be used, and need not stop the work.
+    pub notes: Vec<String>,
     /// Whether the CAD is the file that the claims were made for.
     pub trusted: bool,
 }

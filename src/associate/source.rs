@@ -52,7 +52,8 @@ pub fn tie(
 ) -> Result<Tied, TieError> {
     let held = |mut claims: Claims, inference: Option<Inference>, source: String| {
         choose(&mut claims);
-        let association = associate(mesh, boundary, model, &claims, max_offset)?;
+        let mut association = associate(mesh, boundary, model, &claims, max_offset)?;
+        association.notes.append(&mut claims.notes);
         Ok::<_, AssociateError>(Tied { claims, association, inference, source })
     };
     if let Some(path) = linkage {

@@ -27,8 +27,8 @@ impl fmt::Display for Validation {
         if let Some(tolerance) = self.tolerance {
             writeln!(f, "distances from the CAD, tolerance {tolerance:.2e}")?;
             writeln!(f, "{:<32}{:>9}{:>6}{:>11}  {:<30}  on", "what", "points", "off", "farthest", "node, at")?;
-            let all = self.sheets.iter().chain(&self.strings).chain(&self.points);
-            all.map(|measured| measured.line(f)).collect::<fmt::Result>()?;
+            let mut all = self.sheets.iter().chain(&self.strings).chain(&self.points);
+            all.try_for_each(|measured| measured.line(f))?;
         }
         write!(f, "{}: ", self.linkage.display())?;
         match (self.errors, self.warnings, self.notes) {

@@ -67,7 +67,7 @@ pub(super) fn points(
     let nodes: BTreeSet<NodeId> = boundary.edges.iter().flatten().copied().collect();
     let mut points: BTreeMap<VertexId, Vec<NodeId>> = BTreeMap::new();
     for node in nodes {
-        if let Some(vertex) = incidence.vertices[node.index()].filter(|id| used.contains(id)) {
+        if let Some(&vertex) = incidence.vertices[node.index()].iter().find(|id| used.contains(id)) {
             points.entry(vertex).or_default().push(node);
         }
     }

@@ -21,8 +21,8 @@ pub struct Incidence {
     pub faces: Vec<Vec<FaceId>>,
     /// CAD edges within tolerance, doubled ones as one, with the parameter of the foot.
     edges: Vec<Vec<(EdgeId, f64)>>,
-    /// The CAD vertex within tolerance.
-    pub vertices: Vec<Option<VertexId>>,
+    /// CAD vertices within tolerance, ascending: unsewn faces have each their own.
+    pub vertices: Vec<Vec<VertexId>>,
 }
 
 impl Incidence {
@@ -57,9 +57,9 @@ impl Incidence {
         let (faces, edges) =
             (0..mesh.points.len()).into_par_iter().map(at).collect::<Vec<AtNode>>().into_iter().unzip();
         let vertex = |n: usize| {
-            let slack = slack[n]?;
-            let near = model.vertices().iter().map(|vertex| (vertex.point.distance(mesh.points[n]), vertex.id));
-            near.filter(|(distance, _)| *distance <= slack).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, id)| id)
+            let near =
+                |vertex: &&cad::Vertex| slack[n].is_some_and(|slack| vertex.point.distance(mesh.points[n]) <= slack);
+            model.vertices().iter().filter(near).map(|vertex| vertex.id).collect()
         };
         let vertices = (0..mesh.points.len()).into_par_iter().map(vertex).collect();
         Incidence { faces, edges, vertices }
