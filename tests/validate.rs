@@ -587,6 +587,7 @@ fn the_real_files_are_clean_and_their_defects_are_found() {
             "{file:?}"
         );
     }
+    sphere_with_its_mesh(Path::new(&folder));
     let good = std::fs::read_to_string(&m6).unwrap();
     let dir = tempfile::tempdir().unwrap();
     let first_count = &good[good.find(" count=\"").unwrap()..][..10];
@@ -613,6 +614,42 @@ fn the_real_files_are_clean_and_their_defects_are_found() {
         let at = Some(changed).filter(|_| code != Code::Unreadable);
         let hit = |(own, line): &(String, u32)| own == code.id() && at.is_none_or(|at| at == *line);
         assert!(validation.found().iter().any(hit), "{from} -> {to}: {:?}", validation.codes());
+        assert_eq!(validation.code, 1);
+    }
+}
+
+/// `sphere_ml.xml` with its PLOT3D mesh.
+fn sphere_with_its_mesh(folder: &Path) {
+    let [linkage, mesh] = ["sphere_ml.xml", "sphere.x"].map(|name| folder.join(name));
+    if sagitta(args!["info", mesh]).code != Some(0) {
+        warn("PLOT3D is not read: sphere_ml.xml is NOT validated with its mesh");
+        return;
+    }
+    let more = args!["--mesh", mesh];
+    let validation = Validation::of(&linkage, &more);
+    let notes = [Code::UnknownMeshName.id(), Code::UnreadableGeometry.id()];
+    assert_eq!((validation.codes(), validation.code), (notes.map(str::to_owned).to_vec(), 0));
+    let coverage = validation.json["coverage"].as_array().unwrap();
+    assert!(coverage.len() == 6 && coverage.iter().all(|patch| patch["linked"] == 4), "{coverage:#?}");
+
+    let good = std::fs::read_to_string(&linkage).unwrap();
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("worse.xml");
+    let shifted = renumbered(&good, 1);
+    let cases = [
+        (shifted, "<MeshModelReference", Code::IndexBase),
+        (good.replacen("1 2 5 4", "1 2 5 44", 1), "1 2 5 44", Code::IndexBeyondMesh),
+        (good.replacen("1 2 5 4", "1 2 5 7", 1), "1 2 5 7", Code::NotInMesh),
+        (good.replacen("2 3 6 5", "1 2 5 4", 1), "1 2 5 4", Code::RepeatedFace),
+    ];
+    for (text, needle, code) in cases {
+        assert_ne!(text, good);
+        std::fs::write(&path, &text).unwrap();
+        let validation = Validation::of(&path, &more);
+        // Faces stand on lines of their own; the place of a finding is that of their run.
+        let line = line_of(&text, needle);
+        let hit = |(own, at): &(String, u32)| own == code.id() && (line.saturating_sub(2)..=line).contains(at);
+        assert!(validation.found().iter().any(hit), "{code} near line {line}: {:?}", validation.found());
         assert_eq!(validation.code, 1);
     }
 }
