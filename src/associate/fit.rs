@@ -21,12 +21,7 @@ pub(super) fn plane_through(points: &[DVec3], slack: f64) -> Option<Plane> {
 }
 
 /// Refuses a CAD of another size or at another place than what is tied to it.
-pub(super) fn check_boxes(
-    mesh: &Mesh,
-    boundary: &Boundary,
-    model: &Model,
-    claims: &Claims,
-) -> Result<(), AssociateError> {
+pub fn check_boxes(mesh: &Mesh, boundary: &Boundary, model: &Model, claims: &Claims) -> Result<(), AssociateError> {
     let linked = || claims.sheets.iter().filter(|s| !s.entities.is_empty());
     let corners = linked().flat_map(|s| s.items.iter()).flat_map(|&f| boundary.corners[f].iter());
     let own = Aabb::of_points(corners.map(|n| mesh.points[n.index()]));
