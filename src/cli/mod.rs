@@ -14,6 +14,8 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use crate::formats::cgns;
+
 /// Done, everything certified and on the CAD.
 const DONE: u8 = 0;
 /// Wrong use or bad input: nothing was written.
@@ -63,10 +65,13 @@ enum Command {
 /// Runs the program with its arguments, the first of which is its name.
 #[must_use]
 pub fn run(arguments: Vec<OsString>) -> ExitCode {
-    if let [_, word, path] = arguments.as_slice()
-        && word == cad::READER_SUBCOMMAND
-    {
-        return cad::serve_reader(Path::new(path));
+    if let [_, word, path] = arguments.as_slice() {
+        if word == cad::READER_SUBCOMMAND {
+            return cad::serve_reader(Path::new(path));
+        }
+        if word == cgns::READER_SUBCOMMAND {
+            return cgns::serve_reader(Path::new(path));
+        }
     }
     let program = match Program::try_parse_from(arguments) {
         Ok(program) => program,

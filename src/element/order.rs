@@ -18,15 +18,17 @@ pub enum FileOrder {
     Gmsh,
     /// VTK Lagrange cells (types 68 to 73), XML version 2.1 and later.
     Vtk,
+    /// UGRID (AFLR3), which has linear elements only; a pyramid's apex stands third.
+    Ugrid,
 }
 
 impl FileOrder {
     /// For each slot of an element in the file, the node of the internal order that it holds.
     ///
-    /// `None` where the format has no such element: VTK has no pyramid beyond the linear one.
+    /// `None` where the format has no such element: VTK has no pyramid beyond the linear one, UGRID nothing beyond.
     #[must_use]
     pub fn slots(self, cell: Cell, order: Order) -> Option<&'static [u8]> {
-        static TABLES: [[[Table; 4]; 8]; 3] = [const { [const { [const { Table::new() }; 4] }; 8] }; 3];
+        static TABLES: [[[Table; 4]; 8]; 4] = [const { [const { [const { Table::new() }; 4] }; 8] }; 4];
         TABLES[self as usize][cell as usize][order.get() - 1].get_or_init(|| self.build(cell, order)).as_deref()
     }
 
@@ -34,6 +36,9 @@ impl FileOrder {
         let internal = lattice(cell, order);
         let layout = match self {
             FileOrder::Cgns => return Some((0..internal.len() as u8).collect()),
+            FileOrder::Ugrid if order > Order::LINEAR => return None,
+            FileOrder::Ugrid if cell == Cell::Pyramid => return Some(UGRID_PYRAMID.to_vec()),
+            FileOrder::Ugrid => return Some((0..internal.len() as u8).collect()),
             FileOrder::Gmsh => &GMSH,
             FileOrder::Vtk if cell == Cell::Pyramid && order > Order::LINEAR => return None,
             FileOrder::Vtk => &VTK,
@@ -42,6 +47,9 @@ impl FileOrder {
         Some(nodes.iter().filter_map(|at| internal.iter().position(|x| x == at)).map(|n| n as u8).collect())
     }
 }
+
+/// UGRID's pyramid: its nodes 1, 4, 5, 2 go round the base, and 3 is the apex.
+const UGRID_PYRAMID: [u8; 5] = [0, 3, 4, 1, 2];
 
 /// A pyramid as VTK's degenerate hex of the same order: for each slot of the hex, the weights of the pyramid's nodes
 /// in the slot's point.

@@ -1,4 +1,4 @@
-//! The bytes of an MSH file, taken by line, word or number, with the place kept for errors.
+//! The bytes of a mesh file, taken by line, word or number, with the place kept for errors.
 
 use std::io::BufRead;
 
@@ -102,8 +102,8 @@ impl<R: BufRead> Scanner<R> {
         }
     }
 
-    /// The next word, parsed.
-    pub(super) fn number<T: std::str::FromStr>(&mut self, what: &'static str) -> Result<T, Flaw> {
+    /// The next word: characters up to white space.
+    pub(super) fn word(&mut self, what: &'static str) -> Result<&str, Flaw> {
         self.word.clear();
         while let Some(byte) = self.peek()? {
             let space = byte.is_ascii_whitespace();
@@ -118,13 +118,17 @@ impl<R: BufRead> Scanner<R> {
         if self.word.is_empty() {
             return Err(self.flaw(Fault::Truncated(what)));
         }
-        match std::str::from_utf8(&self.word).ok().and_then(|text| text.parse().ok()) {
-            Some(value) => Ok(value),
-            None => {
-                let found: String = String::from_utf8_lossy(&self.word).chars().take(40).collect();
-                Err(self.flaw(Fault::Number { what, found }))
-            }
+        let place = self.place();
+        std::str::from_utf8(&self.word).map_err(|_| Flaw::new(place, Fault::NotUtf8(what)))
+    }
+
+    /// The next word, parsed.
+    pub(super) fn number<T: std::str::FromStr>(&mut self, what: &'static str) -> Result<T, Flaw> {
+        if let Some(value) = self.word(what)?.parse().ok() {
+            return Ok(value);
         }
+        let found: String = String::from_utf8_lossy(&self.word).chars().take(40).collect();
+        Err(self.flaw(Fault::Number { what, found }))
     }
 
     /// The next `N` bytes.
