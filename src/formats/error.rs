@@ -153,6 +153,22 @@ pub enum Fault {
     EntityDimension(i32),
     #[error(transparent)]
     Cgns(#[from] CgnsFault),
+    #[error(
+        "cell {tag} is of type {code}, which leaves out interior nodes or is none of Lagrange's; write Lagrange or linear cells"
+    )]
+    IncompleteCell { tag: u64, code: i64 },
+    #[error(
+        "cell {tag} is of type {code}: polygons, polyhedra, strips and voxels are not read; write tets, pyramids, prisms, hexes"
+    )]
+    UnknownCell { tag: u64, code: i64 },
+    #[error(
+        "cell {tag} of type {code} has {found} nodes, which no order from 1 to 4 has; its writer lacks such cells: export the mesh as MSH or CGNS"
+    )]
+    CellNodes { tag: u64, code: i64, found: usize },
+    #[error("an array cannot be decoded ({0}): the file is damaged")]
+    Compressed(String),
+    #[error("the XML is damaged: {0}")]
+    Xml(String),
     #[error("{0}; this program's limit")]
     TooMany(#[from] TooMany),
 }

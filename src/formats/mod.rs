@@ -15,12 +15,13 @@ mod output;
 mod plot3d;
 mod scanner;
 mod skin;
+mod su2;
 mod turned;
 mod ugrid;
-mod vtu;
+mod vtk;
 
 use std::fs::File;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use detect::{Format, HEAD, Refusal, detect};
@@ -96,7 +97,14 @@ pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Mesh, Error> {
             ugrid::name_surfaces(&mut mesh, path)?;
             Ok(mesh)
         }
-        _ => Err(of_format("later".into())),
+        Format::Su2 => su2::read(input, length).map_err(flaw),
+        Format::LegacyVtk => vtk::read_legacy(input, length).map_err(flaw),
+        Format::Vtu => {
+            let mut content = Vec::new();
+            input.read_to_end(&mut content).map_err(failed)?;
+            vtk::read_xml(&content).map_err(flaw)
+        }
+        Format::Plot3d => plot3d::read(input, path, length).map_err(flaw),
     }
 }
 
@@ -170,7 +178,7 @@ pub fn write(path: &Path, mesh: &Mesh, options: &WriteOptions<'_>) -> Result<(),
             output::write_whole(path, |out| msh::write(out, mesh, options.msh_version, options.msh_encoding))
         }
         Some("cgns") => output::write_by_name(path, |part| cgns::write(part, mesh)),
-        Some("vtu") => output::write_whole(path, |out| vtu::write(out, mesh, options.fields, options.volume_only)),
+        Some("vtu") => output::write_whole(path, |out| vtk::write(out, mesh, options.fields, options.volume_only)),
         _ => Err(Error::Format { file: path.to_path_buf(), reason: UNKNOWN_NAME.into() }),
     }
 }

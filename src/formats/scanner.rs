@@ -134,14 +134,54 @@ impl<R: BufRead> Scanner<R> {
     /// The next `N` bytes.
     pub(super) fn bytes<const N: usize>(&mut self, what: &'static str) -> Result<[u8; N], Flaw> {
         let mut bytes = [0; N];
-        match self.input.read_exact(&mut bytes) {
+        self.fill(&mut bytes, what)?;
+        Ok(bytes)
+    }
+
+    /// The next bytes, as many as there is room for.
+    pub(super) fn fill(&mut self, bytes: &mut [u8], what: &'static str) -> Result<(), Flaw> {
+        match self.input.read_exact(bytes) {
             Ok(()) => {
-                self.offset += N as u64;
-                Ok(bytes)
+                self.offset += bytes.len() as u64;
+                Ok(())
             }
             Err(e) if e.kind() == std::io::ErrorKind::UnexpectedEof => Err(self.flaw(Fault::Truncated(what))),
             Err(e) => Err(self.flaw(e.into())),
         }
+    }
+
+    /// Goes past what is left of the present line.
+    pub(super) fn rest_of_line(&mut self) -> Result<(), Flaw> {
+        while let Some(byte) = self.peek()? {
+            if byte == b'\n' {
+                break;
+            }
+            self.step(byte);
+        }
+        Ok(())
+    }
+
+    /// Goes past the next empty line.
+    pub(super) fn skip_paragraph(&mut self) -> Result<(), Flaw> {
+        let mut ends = 0;
+        while let Some(byte) = self.peek()? {
+            self.step(byte);
+            match byte {
+                b'\n' => ends += 1,
+                b' ' | b'\t' | b'\r' => {}
+                _ => ends = 0,
+            }
+            if ends == 2 {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether these characters follow, after white space; as far as the input is buffered.
+    pub(super) fn next_is(&mut self, text: &[u8]) -> Result<bool, Flaw> {
+        let buffer = self.input.fill_buf().map_err(|e| Flaw::new(Place::Byte(self.offset), e.into()))?;
+        Ok(buffer.trim_ascii_start().starts_with(text))
     }
 
     /// Goes past the end marker of a section whose content nobody wants.
