@@ -104,7 +104,10 @@ pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Mesh, Error> {
             input.read_to_end(&mut content).map_err(failed)?;
             vtk::read_xml(&content).map_err(flaw)
         }
-        Format::Plot3d => plot3d::read(input, path, length).map_err(flaw),
+        Format::Plot3d => {
+            let head = head.to_vec();
+            plot3d::read(input, &head, path, length)
+        }
     }
 }
 

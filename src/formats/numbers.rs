@@ -142,6 +142,11 @@ impl<R: BufRead> Numbers<R> {
         }
     }
 
+    /// Whether another word follows.
+    pub(super) fn more(&mut self) -> Result<bool, Flaw> {
+        Ok(self.repeated.0 > 0 || self.scanner.more()?)
+    }
+
     /// A count of records of `ints` and `reals` numbers that the rest of the file can hold, so that it may be
     /// allocated for.
     pub(super) fn checked(&self, count: i64, what: &'static str, ints: u64, reals: u64) -> Result<usize, Flaw> {

@@ -122,6 +122,17 @@ impl<R: BufRead> Scanner<R> {
         std::str::from_utf8(&self.word).map_err(|_| Flaw::new(place, Fault::NotUtf8(what)))
     }
 
+    /// Whether a word follows; white space before it is passed over.
+    pub(super) fn more(&mut self) -> Result<bool, Flaw> {
+        while let Some(byte) = self.peek()? {
+            if !byte.is_ascii_whitespace() {
+                return Ok(true);
+            }
+            self.step(byte);
+        }
+        Ok(false)
+    }
+
     /// The next word, parsed.
     pub(super) fn number<T: std::str::FromStr>(&mut self, what: &'static str) -> Result<T, Flaw> {
         if let Some(value) = self.word(what)?.parse().ok() {
