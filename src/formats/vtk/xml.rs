@@ -295,6 +295,9 @@ impl<'a> Source<'a> {
         let length = count.div_ceil(3).checked_mul(4).ok_or_else(cut)?;
         let quads = self.bytes.split_off(..length).ok_or_else(cut)?;
         let mut bytes = decode(quads)?;
+        if bytes.len() < count {
+            return Err(cut());
+        }
         bytes.truncate(count);
         Ok(bytes.into())
     }
