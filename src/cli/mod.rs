@@ -4,7 +4,9 @@
 //! 5 stopped early, certified. Results go to stdout, progress and errors to stderr.
 
 mod check;
+mod convert;
 mod curve;
+mod form;
 mod info;
 mod progress;
 
@@ -37,6 +39,7 @@ Examples:
       -o weeble_p2.vtu --report weeble_p2.json
   sagitta check weeble_p3.msh --linear fixtures/weeble/weeble.msh
   sagitta info fixtures/weeble/weeble.step
+  sagitta convert weeble_p3.msh -o weeble_p3.cgns
 
 Exit codes: 0 done and certified, 2 could not run, 3 certified with some faces
 not on the CAD, 4 not certified, 5 stopped early but certified.";
@@ -57,6 +60,9 @@ enum Command {
     /// Certify any mesh of order 1 to 4: is every element's Jacobian positive everywhere?
     #[command(after_help = EXAMPLES)]
     Check(check::Options),
+    /// Write a mesh in another format, with its patches and groups
+    #[command(after_help = EXAMPLES)]
+    Convert(convert::Options),
     /// Tell what a CAD, mesh or linkage file holds
     #[command(after_help = EXAMPLES)]
     Info(info::Options),
@@ -85,6 +91,7 @@ pub fn run(arguments: Vec<OsString>) -> ExitCode {
     let outcome = match program.command {
         Command::Curve(options) => curve::run(&options),
         Command::Check(options) => check::run(&options),
+        Command::Convert(options) => convert::run(&options),
         Command::Info(options) => info::run(&options),
     };
     match outcome {

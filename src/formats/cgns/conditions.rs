@@ -74,8 +74,9 @@ fn entity_tag(name: &str, ordinal: Option<i32>) -> Option<i32> {
     let (stem, number) = name.rsplit_once('_')?;
     let tag: i32 = number.parse().ok().filter(|&tag| tag > 0)?;
     let nouns = ["point", "curve", "surface", "volume"];
-    let bare = matches!(stem, "P" | "L" | "S" | "V") || (nouns.contains(&stem) && ordinal == Some(tag));
-    bare.then_some(tag)
+    // Gmsh gives no ordinals: with one beside it such a name is a group's own.
+    let gmsh = matches!(stem, "P" | "L" | "S" | "V") && ordinal.is_none();
+    (gmsh || (nouns.contains(&stem) && ordinal == Some(tag))).then_some(tag)
 }
 
 /// A patch of the file: a condition, or a section that none covers.

@@ -251,9 +251,8 @@ impl<'a> Layout<'a> {
 impl Family<'_> {
     fn write(&self, base: &Node, mesh: &Mesh) -> Result<(), Unwritten> {
         let node = base.child(&self.node, labels::FAMILY)?;
-        if self.node != self.group.name {
-            node.text("FamilyName", labels::FAMILY_NAME, &self.group.name)?;
-        }
+        // The name in full; it is here that Gmsh looks for it.
+        node.text(&self.node, labels::FAMILY_NAME, &self.group.name)?;
         node.array("Ordinal", labels::ORDINAL, &[1], &[self.group.tag])?;
         // A family has a kind of condition where its entities agree on one.
         let belongs = |key: EntityKey| {
