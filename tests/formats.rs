@@ -17,7 +17,8 @@ const ENCODINGS: [Encoding; 2] = [Encoding::Binary, Encoding::Ascii];
 fn samples() -> Vec<PathBuf> {
     let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/samples");
     let mut files: Vec<PathBuf> = std::fs::read_dir(dir).unwrap().map(|entry| entry.unwrap().path()).collect();
-    files.retain(|file| file.extension().is_some_and(|e| e == "msh"));
+    // Version 4.0 is only there to be refused.
+    files.retain(|file| file.extension().is_some_and(|e| e == "msh") && !file.to_string_lossy().contains("msh40"));
     files.sort();
     assert!(files.len() >= 15);
     files

@@ -18,6 +18,8 @@ pub(super) struct Assembly {
     pub(super) mesh: Mesh,
     order: Option<Order>,
     blocks: FxHashMap<(Cell, EntityKey), usize>,
+    /// The block that was asked for last.
+    last: Option<((Cell, EntityKey), usize)>,
     /// The tag of the next element that has no number of its own.
     next_tag: u64,
 }
@@ -38,7 +40,7 @@ impl Assembly {
             points,
             ..Mesh::default()
         };
-        Ok(Assembly { mesh, order: None, blocks: FxHashMap::default(), next_tag: 1 })
+        Ok(Assembly { mesh, order: None, blocks: FxHashMap::default(), last: None, next_tag: 1 })
     }
 
     /// Fixes the order of the mesh, or compares with it.
@@ -56,11 +58,16 @@ impl Assembly {
 
     /// The block of a kind of cell on an entity.
     pub(super) fn block(&mut self, cell: Cell, entity: EntityKey) -> &mut Block {
+        let key = (cell, entity);
         let blocks = &mut self.mesh.blocks;
-        let place = *self.blocks.entry((cell, entity)).or_insert_with(|| {
-            blocks.push(Block { cell, entity, physical_tags: Vec::new(), tags: Vec::new(), nodes: Vec::new() });
-            blocks.len() - 1
-        });
+        let place = match self.last {
+            Some((known, place)) if known == key => place,
+            _ => *self.blocks.entry(key).or_insert_with(|| {
+                blocks.push(Block { cell, entity, physical_tags: Vec::new(), tags: Vec::new(), nodes: Vec::new() });
+                blocks.len() - 1
+            }),
+        };
+        self.last = Some((key, place));
         &mut blocks[place]
     }
 

@@ -135,7 +135,7 @@ impl<R: BufRead> Scanner<R> {
 
     /// The next word, parsed.
     pub(super) fn number<T: std::str::FromStr>(&mut self, what: &'static str) -> Result<T, Flaw> {
-        if let Some(value) = self.word(what)?.parse().ok() {
+        if let Ok(value) = self.word(what)?.parse() {
             return Ok(value);
         }
         let found: String = String::from_utf8_lossy(&self.word).chars().take(40).collect();

@@ -165,6 +165,8 @@ def program(arguments, folder=None):
     if done.returncode:
         plain = [re.sub(r"\x1b\[[0-9;]*m", "", line).strip() for line in text.splitlines()]
         lines = [line for line in plain if line and "!---" not in line and "!===" not in line]
+        told = [line for line in lines if "!!" in line or "Error" in line or "Exception" in line]
+        lines = told or lines
         raise ValueError(lines[-1] if lines else f"exit code {done.returncode}")
     return text
 

@@ -43,7 +43,9 @@ pub(super) fn read(path: &Path, length: u64, options: &ReadOptions) -> Result<Me
         timeout: Duration::from_secs(SECONDS + length / 10_000_000),
         memory: MEMORY.saturating_add(length.saturating_mul(4)),
     };
-    let outcome = run(&options.reader, READER_SUBCOMMAND, path, &[], limits).map_err(|error| match error {
+    // Reading needs no lock, and some file systems have none.
+    let unlocked = ("HDF5_USE_FILE_LOCKING", "FALSE".to_owned());
+    let outcome = run(&options.reader, READER_SUBCOMMAND, path, &[unlocked], limits).map_err(|error| match error {
         ChildError::TimedOut => {
             refused(format!("reading took longer than {} s and was ended: a malformed file", limits.timeout.as_secs()))
         }

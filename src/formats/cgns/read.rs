@@ -129,6 +129,8 @@ fn elements(
 ) -> Result<(), Flaw> {
     let mut own = Vec::new();
     for section in &zone.sections {
+        // Neighbours in a section mostly share their patch.
+        let mut last = None;
         section.each(|n, element| {
             let tag = section.first + n as u64;
             assembly.set_order(element.cell, element.order).map_err(|fault| section.flaw(fault))?;
@@ -137,7 +139,12 @@ fn elements(
                 let node = node_of(nodes.len(), number, 1, tag).map_err(|fault| section.flaw(fault))?;
                 own.push(nodes[node.index()]);
             }
-            let entity = conditions.entity(zone, section, labels[section.before + n], element.cell);
+            let place = (labels[section.before + n], element.cell);
+            let entity = match last {
+                Some((known, entity)) if known == place => entity,
+                _ => conditions.entity(zone, section, place.0, place.1),
+            };
+            last = Some((place, entity));
             assembly.push_tagged(element.cell, entity, tags + tag, &own);
             Ok(())
         })?;

@@ -34,7 +34,7 @@ pub(in crate::formats) fn encoding(path: &Path, head: &[u8], length: u64) -> Res
         if holds(&named) {
             return Ok(named);
         }
-        let other = fitting(head, length).map_or("a file that is cut off".to_owned(), |layout| word_of(layout));
+        let other = fitting(head, length).map_or("a file that is cut off".to_owned(), word_of);
         return Err(format!(
             "its name says {word}, but its counts do not fit its {length} bytes: it looks like {other}"
         ));
