@@ -53,6 +53,13 @@ def differences(found, expected, names):
     return wrong, untold
 
 
+def as_vtu(expected):
+    """What a VTU file of this mesh holds: pyramids as degenerate hexes, as VTK has no others beyond the linear ones."""
+    cells = dict(expected["cells"])
+    cells["hex"] = cells.get("hex", 0) + cells.pop("pyramid", 0)
+    return {**expected, "cells": cells}
+
+
 def consume(sagitta, case, order, folder, results):
     curved = os.path.join(folder, "curved.msh")
     base, linear = os.path.join(FIXTURES, case, case), os.path.join(folder, "linear.msh")
@@ -83,7 +90,7 @@ def consume(sagitta, case, order, folder, results):
             if "error" in found:
                 verdict = ("refused", found["error"].replace(folder + "/", ""))
             else:
-                wrong, untold = differences(found, expected, names)
+                wrong, untold = differences(found, as_vtu(expected) if key.startswith("vtu") else expected, names)
                 verdict = ("wrong", "; ".join(wrong)) if wrong else ("agrees", ", ".join(untold))
             results.setdefault((reader, key), []).append((f"{case} P{order}", *verdict))
             print(f"{case} P{order} {reader} {key}: {verdict}", file=sys.stderr)
@@ -129,6 +136,10 @@ def main():
         for order in orders or "234":
             with tempfile.TemporaryDirectory() as folder:
                 consume(os.path.abspath(sagitta), case, order, folder, results)
+    table(results)
+
+
+def table(results):
     print("| reader | file | agrees | does not, and why |\n|---|---|---|---|")
     for (reader, key), verdicts in results.items():
         agreed = [what for what, verdict, _ in verdicts if verdict == "agrees"]
@@ -142,4 +153,5 @@ def main():
         print(f"| {reader} | {TITLES[key]} | {len(agreed)} of {len(verdicts)}{told} | {reasons} |")
 
 
-main()
+if __name__ == "__main__":
+    main()
