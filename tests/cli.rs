@@ -52,7 +52,8 @@ fn run(commands: &[String], dir: &Path) {
     for command in commands {
         let command = command.split('#').next().unwrap();
         let place = |word: &str| -> OsString {
-            let made = [".msh", ".vtu", ".json"].iter().any(|end| word.ends_with(end)) && !root().join(word).exists();
+            let made =
+                [".msh", ".cgns", ".vtu", ".json"].iter().any(|end| word.ends_with(end)) && !root().join(word).exists();
             if made { dir.join(Path::new(word).file_name().unwrap()).into() } else { word.into() }
         };
         let arguments: Vec<OsString> = command.split_whitespace().map(place).collect();
@@ -70,7 +71,7 @@ fn examples_of_the_help_run() {
     let help = sagitta(["--help"]).expect(0).stdout;
     let commands = examples(&help);
     let starts = commands.iter().map(|command| command.split(' ').next().unwrap()).collect::<Vec<_>>();
-    assert_eq!(starts, ["curve", "curve", "check", "info"], "{help}");
+    assert_eq!(starts, ["curve", "curve", "check", "info", "convert"], "{help}");
     run(&commands, tempfile::tempdir().unwrap().path());
 }
 
