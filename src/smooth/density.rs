@@ -7,7 +7,8 @@
 //! Shape: `t = 1/C_WCN^2 - 1`; Jacobian: `t = (1/r - 1)^2`, `r = min(1, J/J_c)`. Either enters as `t + w t^2`: the
 //! emphasis `w` makes the worst samples count (measured on the weeble: min C_WCN / C_JAC 0.84 / 0.70 at `w = 0`,
 //! 0.93 / 0.76 at `w = 100`). While elements are inverted the determinant is regularised,
-//! `chi(l) = (l + sqrt(l^2 + 4 delta^2)) / 2`, which keeps the objective finite and pulls towards validity.
+//! `chi(l) = (l + sqrt(l^2 + 4 delta^2)) / 2`, scaled to `chi(1) = 1`, which keeps the objective finite and pulls towards
+//! validity.
 
 use glam::{DMat3, DVec3};
 
@@ -52,12 +53,14 @@ impl Density {
         let root = (l * l + 4.0 * self.delta * self.delta).sqrt();
         // For l << 0 the sum cancels; its conjugate does not.
         let value = if l >= 0.0 { 0.5 * (l + root) } else { 2.0 * self.delta * self.delta / (root - l) };
-        Jet { value, slope: value / root, curvature: 2.0 * self.delta * self.delta / (root * root * root) }
+        let one = 2.0 / (1.0 + (1.0 + 4.0 * self.delta * self.delta).sqrt());
+        let curvature = 2.0 * self.delta * self.delta / (root * root * root);
+        Jet { value: one * value, slope: one * value / root, curvature: one * curvature }
     }
 
-    /// `t + w t^2`.
+    /// `t + w t^2`; below zero, where regularisation can take it, `t` alone.
     fn emphasised(&self, t: f64) -> Jet {
-        let w = self.emphasis;
+        let w = if t > 0.0 { self.emphasis } else { 0.0 };
         Jet { value: t + w * t * t, slope: 1.0 + 2.0 * w * t, curvature: 2.0 * w }
     }
 

@@ -7,7 +7,7 @@
 
 use std::collections::VecDeque;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use super::block::positive_inverse;
@@ -37,7 +37,7 @@ pub(super) fn descend(
     let mut state = State::new(objective, constraint, x);
     let mut memory: VecDeque<Pair> = VecDeque::new();
     let mut done = 0;
-    while done < sweeps && state.value > 0.0 {
+    while done < sweeps {
         let direction = state.direction(&memory);
         let slope = dot(&direction, &state.gradient);
         let before = state.value;
@@ -81,6 +81,8 @@ struct State<'a> {
     derivatives: Vec<NodeDerivative>,
     /// The gradient within each node's free directions.
     gradient: Vec<DVec3>,
+    /// The inverse of each node's Hessian block, on its free directions.
+    inverses: Vec<DMat3>,
     slots: Vec<NodeDerivative>,
 }
 
@@ -93,6 +95,7 @@ impl<'a> State<'a> {
             freedom: Vec::new(),
             derivatives: Vec::new(),
             gradient: Vec::new(),
+            inverses: Vec::new(),
             slots: Vec::new(),
         };
         state.look(x);
@@ -107,6 +110,8 @@ impl<'a> State<'a> {
             .into_par_iter()
             .map(|i| if patch.movable[i] { self.constraint.freedom(patch.nodes[i], x[i]) } else { Freedom::Fixed })
             .collect();
+        let blocks = self.derivatives.par_iter().zip(&self.freedom).with_min_len(256);
+        blocks.map(|(d, &f)| positive_inverse(d.hessian, f, FLAT)).collect_into_vec(&mut self.inverses);
         self.gradient = self.derivatives.iter().zip(&self.freedom).map(|(d, f)| f.keep(d.gradient)).collect();
     }
 
@@ -132,8 +137,7 @@ impl<'a> State<'a> {
     }
 
     fn preconditioned(&self, vector: &[DVec3]) -> Vec<DVec3> {
-        let blocks = self.derivatives.par_iter().zip(&self.freedom);
-        blocks.zip(vector).map(|((d, &f), &v)| positive_inverse(d.hessian, f, FLAT) * v).collect()
+        self.inverses.par_iter().zip(vector).with_min_len(4096).map(|(&inverse, &v)| inverse * v).collect()
     }
 
     /// Backtracks from the full step; on success `x` and the state are those of the new place.

@@ -8,6 +8,7 @@ mod objective;
 mod patch;
 mod problem;
 mod stages;
+mod survey;
 
 use glam::DVec3;
 

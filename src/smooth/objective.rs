@@ -7,8 +7,9 @@ use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use super::Anchor;
-use super::kernel::{Element, Kernel, NodeDerivative, Scratch, Weights};
+use super::kernel::{Element, Kernel, NodeDerivative, Weights};
 use super::patch::{Patch, Run};
+use super::survey::Scratch;
 use crate::quality::Cut;
 
 /// Elements that one task evaluates.

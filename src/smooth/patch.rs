@@ -6,9 +6,11 @@ use super::Problem;
 use crate::element::Cell;
 use crate::mesh::NodeId;
 
-/// Elements of one cell in a patch; their nodes' slots follow each other.
+/// Elements of one cell and survey density in a patch; their nodes' slots follow each other.
 pub(super) struct Run {
     pub(super) cell: Cell,
+    /// Which survey they are looked at with.
+    pub(super) density: u8,
     /// Nodes an element.
     pub(super) stride: usize,
     /// First element of the run in [`Patch::elements`].
@@ -38,18 +40,18 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    /// The patch of the elements that `active` names (rising ids).
-    pub(super) fn new(problem: &Problem, active: &[usize]) -> Patch {
+    /// The patch of the elements that `active` names (rising ids), with every element's survey density.
+    pub(super) fn new(problem: &Problem, active: &[usize], density: &[u8]) -> Patch {
         let mut runs: Vec<Run> = Vec::new();
         let mut elements: Vec<usize> = active.to_vec();
-        elements.sort_by_key(|&e| (problem.cell(e), e));
+        elements.sort_by_key(|&e| (problem.cell(e), density[e], e));
         let mut local = vec![u32::MAX; problem.node_count()];
         let (mut nodes, mut slots) = (Vec::new(), Vec::new());
         for (place, &e) in elements.iter().enumerate() {
-            let (cell, own) = (problem.cell(e), problem.nodes(e));
+            let (cell, own, density) = (problem.cell(e), problem.nodes(e), density[e]);
             match runs.last_mut() {
-                Some(run) if run.cell == cell => run.count += 1,
-                _ => runs.push(Run { cell, stride: own.len(), first: place, count: 1, slot: slots.len() }),
+                Some(run) if run.cell == cell && run.density == density => run.count += 1,
+                _ => runs.push(Run { cell, density, stride: own.len(), first: place, count: 1, slot: slots.len() }),
             }
             for &node in own {
                 let index = &mut local[node.index()];

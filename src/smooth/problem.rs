@@ -3,7 +3,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::kernel::{Element, Kernel, Scratch};
+use super::kernel::{Element, Kernel};
+use super::survey::Scratch;
 use crate::element::{Cell, Order};
 use crate::mesh::{Block, Mesh, NodeId};
 use crate::quality::{Cut, element_c_wcn};
