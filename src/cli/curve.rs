@@ -77,6 +77,9 @@ pub(super) struct Options {
     /// Seconds after which reading the CAD is given up
     #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = positive)]
     cad_timeout: f64,
+    /// Seconds after which smoothing ends; what is there by then is certified and written
+    #[arg(long, value_name = "S", value_parser = positive)]
+    time_limit: Option<f64>,
     /// No progress on stderr
     #[arg(short, long)]
     quiet: bool,
@@ -146,7 +149,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
         rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global()?;
     }
     let job = options.job();
-    let mut teller = Teller::new(options.quiet);
+    let mut teller = Teller::new(options.quiet, options.time_limit.map(Duration::from_secs_f64))?;
     let curved = pipeline::curve(&job, &mut teller);
     teller.finish();
     let curved = curved?;
@@ -159,6 +162,9 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
         write_json(path, &report)?;
     }
     print(&report.to_string())?;
+    if let Some(stop) = teller.stop {
+        print(&stop.to_string())?;
+    }
     let written = options.output.display();
     if !certified && !options.keep_invalid {
         eprintln!("sagitta: {written}: not written, as not every element is proven valid (--keep-invalid writes it)");
