@@ -81,6 +81,9 @@ pub(super) struct Options {
     /// Seconds after which reading the CAD is given up
     #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = positive)]
     cad_timeout: f64,
+    /// Seconds after which smoothing ends; what is there by then is certified and written
+    #[arg(long, value_name = "S", value_parser = positive)]
+    time_limit: Option<f64>,
     /// No progress on stderr
     #[arg(short, long)]
     quiet: bool,
@@ -157,7 +160,8 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let Some(output) = options.output.as_ref().filter(|_| !options.dry_run) else {
         return dry_run(&job, options.report.as_deref());
     };
-    let mut teller = Teller::new(options.quiet);
+    let limit = options.time_limit.map(Duration::from_secs_f64);
+    let mut teller = Teller::new(options.quiet).stoppable(limit)?;
     let curved = pipeline::curve(&job, &mut teller);
     teller.finish();
     let curved = curved?;
@@ -170,6 +174,9 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
         write_json(path, &report)?;
     }
     print(&report.to_string())?;
+    if let Some(stop) = teller.stop {
+        print(&stop.to_string())?;
+    }
     let written = output.display();
     if !certified && !options.keep_invalid {
         eprintln!("sagitta: {written}: not written, as not every element is proven valid (--keep-invalid writes it)");

@@ -36,6 +36,8 @@ const GIVEN_UP: u8 = 3;
 const NOT_CERTIFIED: u8 = 4;
 /// Ended before it was done; certified.
 const STOPPED: u8 = 5;
+/// Interrupted twice: ended at once, nothing was written.
+const INTERRUPTED: u8 = 130;
 
 // Narrow, as clap breaks longer lines on an 80-column terminal, where they can no longer be pasted.
 const EXAMPLES: &str = "\

@@ -1,18 +1,41 @@
-//! Progress on stderr: a live line on a terminal, plain lines elsewhere.
+//! Progress on stderr: a live line on a terminal, plain lines elsewhere; and what ends the smoothing early.
 
 use std::io::IsTerminal;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::INTERRUPTED;
 use crate::pipeline::{Observer, Step};
 use crate::smooth::Progress;
 
 /// Plain lines come no more often than this.
 pub(super) const INTERVAL: Duration = Duration::from_secs(2);
 
-/// Tells how the work goes on.
+/// Why smoothing ended before it was done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Stop {
+    Interrupted,
+    TimeLimit(Duration),
+}
+
+impl std::fmt::Display for Stop {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Stop::Interrupted => f.write_str("stopped early: interrupted"),
+            Stop::TimeLimit(limit) => write!(f, "stopped early: the time limit of {} s is over", limit.as_secs_f64()),
+        }
+    }
+}
+
+/// Tells how the work goes on, and may end the smoothing on an interrupt or after a time limit.
 pub(super) struct Teller {
+    interrupted: Arc<AtomicBool>,
+    limit: Option<Duration>,
+    /// Why smoothing was ended, once it was.
+    pub(super) stop: Option<Stop>,
     bar: Option<ProgressBar>,
     quiet: bool,
     start: Instant,
@@ -21,9 +44,22 @@ pub(super) struct Teller {
 }
 
 impl Teller {
+    /// Begins to count the time.
     pub(super) fn new(quiet: bool) -> Teller {
         let bar = (!quiet && std::io::stderr().is_terminal()).then(spinner);
-        Teller { bar, quiet, start: Instant::now(), smoothing: None, last: None }
+        let interrupted = Arc::default();
+        Teller { interrupted, limit: None, stop: None, bar, quiet, start: Instant::now(), smoothing: None, last: None }
+    }
+
+    /// Ends smoothing after a time limit, and takes over interrupts: the first ends the smoothing, the second the program.
+    pub(super) fn stoppable(self, limit: Option<Duration>) -> Result<Teller, ctrlc::Error> {
+        let flag = Arc::clone(&self.interrupted);
+        ctrlc::set_handler(move || {
+            if flag.swap(true, Ordering::Relaxed) {
+                std::process::exit(i32::from(INTERRUPTED));
+            }
+        })?;
+        Ok(Teller { limit, ..self })
     }
 
     /// Takes the live line away.
@@ -80,6 +116,8 @@ impl Observer for Teller {
                 progress.inverted
             ));
         }
-        true
+        let over = self.limit.filter(|&limit| self.start.elapsed() >= limit).map(Stop::TimeLimit);
+        self.stop = if self.interrupted.load(Ordering::Relaxed) { Some(Stop::Interrupted) } else { over };
+        self.stop.is_none()
     }
 }

@@ -10,6 +10,8 @@ use crate::mesh::NodeId;
 
 /// Reach of the displacement, in displacements of the wall around the foot.
 const REACH: f64 = 5.0;
+/// Share of the displacement below which there is none: elements that it does not reach stay straight and cost nothing.
+const END: f64 = 0.01;
 /// Least reach, in shortest edges of the wall faces around the foot.
 const LEAST_REACH: f64 = 0.6;
 
@@ -105,12 +107,12 @@ impl<'a> Field<'a> {
         p * self.share(face, foot.at, x.distance(foot.place))
     }
 
-    /// `1 / (1 + (d / reach)^2)`.
+    /// `1 / (1 + (d / reach)^2)`, less [`END`] and none beyond.
     fn share(&self, face: &WallFace, at: [f64; 3], distance: f64) -> f64 {
         let weights = basis::values(face.cell, Order::LINEAR, at);
         let reach: f64 = face.corners().iter().zip(weights).map(|(n, w)| self.reach[n.index()] * w).sum();
         let t = distance / reach;
-        1.0 / (1.0 + t * t)
+        ((1.0 / (1.0 + t * t) - END) / (1.0 - END)).max(0.0)
     }
 
     /// The combination of the corners' roots, where one wall face has them all.

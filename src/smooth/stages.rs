@@ -241,7 +241,7 @@ impl Run<'_, '_> {
             idle = 0;
             match (low, focused) {
                 (true, _) if low_rings < MOST_RINGS => low_rings *= 2,
-                (false, false) => {
+                (false, false) if self.lowest(stage) + FOCUS < self.settings.threshold => {
                     focused = true;
                     x.clone_from(&self.best.x);
                     self.costs.clone_from(&self.best.costs);

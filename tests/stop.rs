@@ -1,0 +1,49 @@
+//! Smoothing that is ended early leaves a valid mesh, and says why.
+#![allow(clippy::unwrap_used)]
+
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use sagitta::certify::{self, Settings};
+use sagitta::formats;
+
+fn curve(out: &Path, more: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_sagitta"));
+    command.args(["curve", "fixtures/weeble/weeble.msh", "--cad", "fixtures/weeble/weeble.step", "--order", "4"]);
+    command.args(["--threshold", "1", "-o"]).arg(out).args(more);
+    command
+}
+
+fn assert_valid(out: &Path) {
+    let mesh = formats::read(out).unwrap();
+    assert_eq!(mesh.order.get(), 4);
+    assert!(certify::mesh(&mesh, None, &Settings::default()).holds());
+}
+
+#[test]
+fn the_time_limit_ends_smoothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("weeble.msh");
+    let done = curve(&out, &["--time-limit", "0.01", "--quiet"]).output().unwrap();
+    let told = String::from_utf8(done.stdout).unwrap();
+    assert_eq!(done.status.code(), Some(5), "{told}");
+    assert!(told.contains("stopped early: the time limit of 0.01 s is over"), "{told}");
+    assert_valid(&out);
+}
+
+#[test]
+fn an_interrupt_ends_smoothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("weeble.msh");
+    let mut child = curve(&out, &[]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
+    assert!(lines.any(|line| line.unwrap().contains("] smooth: ")), "a sweep is told before it ends");
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    lines.for_each(drop);
+    let mut told = String::new();
+    child.stdout.take().unwrap().read_to_string(&mut told).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(5), "{told}");
+    assert!(told.contains("stopped early: interrupted"), "{told}");
+    assert_valid(&out);
+}
