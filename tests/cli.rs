@@ -25,7 +25,9 @@ fn help_of_every_command_has_the_examples() {
     }
     let version = sagitta(["--version"]).expect(0);
     assert_eq!(version.stdout.trim(), format!("sagitta {}", env!("CARGO_PKG_VERSION")));
-    for wrong in [&["nonsense"][..]].iter().chain(&commands) {
+    // `explain` alone lists all codes.
+    let without_arguments = commands.iter().filter(|command| command != &&["explain"]);
+    for wrong in [&["nonsense"][..]].iter().chain(without_arguments) {
         let told = sagitta(*wrong).expect(2);
         assert!(told.stdout.is_empty() && told.stderr.contains("Usage: sagitta"), "{wrong:?}: {}", told.stderr);
     }
