@@ -104,6 +104,11 @@ fn rehearse(model: &Model) -> Result<(), String> {
         {
             let _ = model.evaluate(face.id.into(), [s, t]);
         }
+        for side in &model.geometry().faces[face.id.index()].sides {
+            for t in [side.range[0], 0.5 * (side.range[0] + side.range[1]), side.range[1]] {
+                let _ = side.pcurve.d1(t, &mut [0.0; 4]);
+            }
+        }
         if let Ok(group) = Group::of_faces(model, &[face.id]) {
             let _ = group.closest(face.bounds.center(), None);
         }

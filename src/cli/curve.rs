@@ -1,7 +1,7 @@
 //! `sagitta curve`.
 
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use cad::ReadOptions;
@@ -9,6 +9,7 @@ use clap::Args;
 
 use super::progress::Teller;
 use super::{DONE, Failure, GIVEN_UP, NOT_CERTIFIED, STOPPED, print, write_json};
+use crate::associate::Choice;
 use crate::element::Order;
 use crate::formats::{self, WriteOptions, msh};
 use crate::pipeline::{self, Curved, Job};
@@ -23,15 +24,24 @@ pub(super) struct Options {
     /// The CAD it was made on: STEP, IGES or BREP
     #[arg(long, value_name = "FILE")]
     cad: PathBuf,
-    /// MeshLink file that ties mesh and CAD together; without it the mesh's entity tags do
+    /// MeshLink file that ties mesh and CAD together; without it the mesh's entity tags do, or else geometry
     #[arg(long, value_name = "LINK.xml")]
     linkage: Option<PathBuf>,
     /// Polynomial order of the curved mesh: 2, 3 or 4
     #[arg(long, value_name = "P", value_parser = order)]
     order: Order,
     /// The curved mesh: .msh for solvers, .vtu for pictures
-    #[arg(short, long, value_name = "OUT")]
-    output: PathBuf,
+    #[arg(short, long, value_name = "OUT", required_unless_present = "dry_run")]
+    output: Option<PathBuf>,
+    /// Tell what lies on what, and stop there
+    #[arg(long)]
+    dry_run: bool,
+    /// Curve these patches only: physical names or surface numbers
+    #[arg(long, value_name = "PATCH,...", value_delimiter = ',', conflicts_with = "straight")]
+    curve: Vec<String>,
+    /// Leave these patches straight
+    #[arg(long, value_name = "PATCH,...", value_delimiter = ',')]
+    straight: Vec<String>,
     /// Write the report as JSON too
     #[arg(long, value_name = "R.json")]
     report: Option<PathBuf>,
@@ -99,7 +109,8 @@ fn scale(text: &str) -> Result<Scale, String> {
     if text == "auto" { Ok(Scale(None)) } else { positive(text).map(|factor| Scale(Some(factor))) }
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+/// A finite number above 0.
+pub(super) fn positive(text: &str) -> Result<f64, String> {
     let value = text.parse::<f64>().ok().filter(|v| v.is_finite() && *v > 0.0);
     value.ok_or_else(|| format!("{text:?} is not a positive number"))
 }
@@ -118,11 +129,20 @@ fn msh_version(text: &str) -> Result<msh::Version, String> {
 }
 
 impl Options {
+    fn patches(&self) -> Choice {
+        match (&self.curve[..], &self.straight[..]) {
+            ([], []) => Choice::All,
+            ([], straight) => Choice::Straight(straight.to_vec()),
+            (curve, _) => Choice::Curve(curve.to_vec()),
+        }
+    }
+
     fn job(&self) -> Job {
         Job {
             mesh: self.mesh.clone(),
             cad: self.cad.clone(),
             linkage: self.linkage.clone(),
+            patches: self.patches(),
             order: self.order,
             max_offset: self.max_offset,
             freeze_linear: self.freeze_linear,
@@ -141,7 +161,9 @@ impl Options {
 
 /// Curves a mesh, writes it, and tells how it went.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
-    formats::check_output(&options.output)?;
+    if let Some(output) = &options.output {
+        formats::check_output(output)?;
+    }
     if let Some(report) = &options.report {
         formats::check_folder(report)?;
     }
@@ -149,6 +171,9 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
         rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global()?;
     }
     let job = options.job();
+    let Some(output) = options.output.as_ref().filter(|_| !options.dry_run) else {
+        return dry_run(&job, options.report.as_deref());
+    };
     let mut teller = Teller::new(options.quiet, options.time_limit.map(Duration::from_secs_f64))?;
     let curved = pipeline::curve(&job, &mut teller);
     teller.finish();
@@ -156,7 +181,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let report = report(&job, &curved);
     let certified = report.certified;
     if certified || options.keep_invalid {
-        write(options, &curved)?;
+        write(options, output, &curved)?;
     }
     if let Some(path) = &options.report {
         write_json(path, &report)?;
@@ -165,7 +190,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     if let Some(stop) = teller.stop {
         print(&stop.to_string())?;
     }
-    let written = options.output.display();
+    let written = output.display();
     if !certified && !options.keep_invalid {
         eprintln!("sagitta: {written}: not written, as not every element is proven valid (--keep-invalid writes it)");
     } else {
@@ -174,7 +199,17 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     Ok(exit_code(&curved))
 }
 
-fn write(options: &Options, curved: &Curved) -> Result<(), Failure> {
+/// Tells what lies on what.
+fn dry_run(job: &Job, report: Option<&Path>) -> Result<u8, Failure> {
+    let summary = pipeline::association(job)?;
+    if let Some(path) = report {
+        write_json(path, &summary)?;
+    }
+    print(&summary.to_string())?;
+    Ok(DONE)
+}
+
+fn write(options: &Options, output: &Path, curved: &Curved) -> Result<(), Failure> {
     let fields = fields(curved);
     let encoding = if options.ascii { msh::Encoding::Ascii } else { msh::Encoding::Binary };
     let how = WriteOptions {
@@ -183,7 +218,7 @@ fn write(options: &Options, curved: &Curved) -> Result<(), Failure> {
         volume_only: options.volume_only,
         fields: &fields,
     };
-    formats::write(&options.output, &curved.mesh, &how)?;
+    formats::write(output, &curved.mesh, &how)?;
     Ok(())
 }
 

@@ -12,7 +12,7 @@ use crate::pipeline::{Observer, Step};
 use crate::smooth::Progress;
 
 /// Plain lines come no more often than this.
-const INTERVAL: Duration = Duration::from_secs(2);
+pub(super) const INTERVAL: Duration = Duration::from_secs(2);
 
 /// Why smoothing ended before it was done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,7 +64,8 @@ impl Teller {
         }
     }
 
-    fn say(&self, text: String) {
+    /// Tells one thing.
+    pub(super) fn say(&self, text: String) {
         match &self.bar {
             Some(bar) => bar.set_message(text),
             None if self.quiet => {}

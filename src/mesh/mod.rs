@@ -91,6 +91,13 @@ impl Mesh {
         names
     }
 
+    /// What people call an entity: its physical names, else its dimension and number.
+    #[must_use]
+    pub fn label(&self, entity: EntityKey) -> String {
+        let names = self.names_of(entity);
+        if names.is_empty() { entity.to_string() } else { names.join(",") }
+    }
+
     /// The points of an element.
     pub fn points_of<'a>(&'a self, nodes: &'a [NodeId]) -> impl ExactSizeIterator<Item = DVec3> + 'a {
         nodes.iter().map(|&n| self.points[n.index()])

@@ -1,17 +1,18 @@
 //! Writes B-spline faces as an IGES file (entities 128), so that benchmarks and tests need no stored CAD.
+#![allow(unreachable_pub)] // each program includes it as a module of its own
 
 use glam::DVec3;
 use std::fmt::Write;
 
 /// A cubic B-spline face by its poles, `u` fastest, on uniform clamped knots over 0..=1.
-pub(crate) struct Patch {
-    pub(crate) count: [usize; 2],
-    pub(crate) poles: Vec<DVec3>,
+pub struct Patch {
+    pub count: [usize; 2],
+    pub poles: Vec<DVec3>,
 }
 
 impl Patch {
     /// Poles on a grid of `count` of a map from the unit square.
-    pub(crate) fn sampled(count: [usize; 2], at: impl Fn(f64, f64) -> DVec3) -> Self {
+    pub fn sampled(count: [usize; 2], at: impl Fn(f64, f64) -> DVec3) -> Self {
         let fraction = |i: usize, n: usize| i as f64 / (n - 1) as f64;
         let poles = (0..count[1])
             .flat_map(|j| (0..count[0]).map(move |i| (i, j)))
@@ -54,7 +55,7 @@ fn wrapped(record: &str, width: usize) -> Vec<String> {
 }
 
 /// The file, in millimetres.
-pub(crate) fn file(patches: &[Patch]) -> String {
+pub fn file(patches: &[Patch]) -> String {
     let mut text = format!("{:<72}S{:>7}\n", "patches", 1);
     let global = "1H,,1H;,7Hpatches,7Hpatches,7Hsagitta,7Hsagitta,32,38,6,308,15,7Hpatches,1.,2,2HMM,1,0.01,15H20260101.000000,\
                   1.E-7,1000.,0H,0H,11,0,15H20260101.000000;";
