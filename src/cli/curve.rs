@@ -174,7 +174,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let Some(output) = options.output.as_ref().filter(|_| !options.dry_run) else {
         return dry_run(&job, options.report.as_deref());
     };
-    let mut teller = Teller::new(options.quiet, options.time_limit.map(Duration::from_secs_f64))?;
+    let mut teller = Teller::new(options.quiet).stopping(options.time_limit.map(Duration::from_secs_f64))?;
     let curved = pipeline::curve(&job, &mut teller);
     teller.finish();
     let curved = curved?;
