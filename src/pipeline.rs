@@ -257,7 +257,7 @@ pub fn association(job: &Job) -> Result<Summary, PipelineError> {
     let (tied, cad) = tie(job, &linear, &boundary, read_model(job)?)?;
     let mut summary =
         associate::summary(&tied.source, &linear, &boundary, &cad.model, &tied.claims, tied.inference.as_ref());
-    summary.notes = tied.association.notes;
+    summary.notes = linear.notes.iter().cloned().chain(tied.association.notes).collect();
     Ok(summary)
 }
 

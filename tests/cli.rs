@@ -54,7 +54,7 @@ fn run(commands: &[String], dir: &Path) {
     for command in commands {
         let command = command.split('#').next().unwrap();
         let place = |word: &str| -> OsString {
-            let made = [".msh", ".vtu", ".json", ".csv", ".xml"].iter().any(|end| word.ends_with(end))
+            let made = [".msh", ".cgns", ".vtu", ".json", ".csv", ".xml"].iter().any(|end| word.ends_with(end))
                 && !root().join(word).exists();
             if made { dir.join(Path::new(word).file_name().unwrap()).into() } else { word.into() }
         };
@@ -75,7 +75,7 @@ fn examples_of_the_help_run() {
     let starts = commands.iter().map(|command| command.split(' ').next().unwrap()).collect::<Vec<_>>();
     assert_eq!(
         starts,
-        ["curve", "curve", "check", "link", "validate", "explain", "info", "groups", "project"],
+        ["curve", "curve", "check", "link", "validate", "explain", "info", "groups", "project", "convert"],
         "{help}"
     );
     run(&commands, tempfile::tempdir().unwrap().path());

@@ -30,7 +30,7 @@ impl std::fmt::Display for Stop {
     }
 }
 
-/// Tells how the work goes on, and ends the smoothing on an interrupt or after a time limit.
+/// Tells how the work goes on, and may end the smoothing on an interrupt or after a time limit.
 pub(super) struct Teller {
     interrupted: Arc<AtomicBool>,
     limit: Option<Duration>,
@@ -47,12 +47,12 @@ impl Teller {
     /// Begins to count the time.
     pub(super) fn new(quiet: bool) -> Teller {
         let bar = (!quiet && std::io::stderr().is_terminal()).then(spinner);
-        let interrupted = Arc::new(AtomicBool::new(false));
+        let interrupted = Arc::default();
         Teller { interrupted, limit: None, stop: None, bar, quiet, start: Instant::now(), smoothing: None, last: None }
     }
 
-    /// Takes over interrupts, the first of which ends the smoothing and the second the program, and sets a time limit.
-    pub(super) fn stopping(self, limit: Option<Duration>) -> Result<Teller, ctrlc::Error> {
+    /// Ends smoothing after a time limit, and takes over interrupts: the first ends the smoothing, the second the program.
+    pub(super) fn stoppable(self, limit: Option<Duration>) -> Result<Teller, ctrlc::Error> {
         let flag = Arc::clone(&self.interrupted);
         ctrlc::set_handler(move || {
             if flag.swap(true, Ordering::Relaxed) {
