@@ -41,6 +41,8 @@ const LOW: f64 = 0.3;
 /// Where the whole patch gains no more, the elements within this of the worst are worked on alone, with their surroundings:
 /// wing_sharp at scale 0.4, P4, goes on from C_JAC 0.42 to 0.51 by it, weeble_hybrid P3 from 0.67 to 0.80.
 const FOCUS: f64 = 0.1;
+/// Idle rounds after which a focused stage ends.
+const PATIENCE: usize = 4;
 /// Rings of neighbours around them.
 const FOCUS_RINGS: usize = 4;
 /// Regularisation of determinants, as a share of what the worst is below [`LOW`] (after Garanzha et al.,
@@ -235,7 +237,7 @@ impl Run<'_, '_> {
             self.round(stage, &patch, x);
             self.survey(&patch.elements, x);
             idle = if self.lowest(stage) - before < PROGRESS { idle + 1 } else { 0 };
-            if idle < 2 {
+            if idle < if focused { PATIENCE } else { 2 } {
                 continue;
             }
             idle = 0;
