@@ -8,6 +8,7 @@ use cad::ReadOptions;
 use clap::Args;
 
 use super::progress::Teller;
+use super::trace::Trace;
 use super::{DONE, Failure, GIVEN_UP, NOT_CERTIFIED, STOPPED, print, write_json};
 use crate::associate::Choice;
 use crate::element::Order;
@@ -63,6 +64,12 @@ pub(super) struct Options {
     /// Weight of shape against size, equation (2); lower it to 0.3 where Jacobians stay small [default: (p-1)/p]
     #[arg(long, value_name = "0..1", value_parser = share)]
     alpha: Option<f64>,
+    /// What moves the nodes: quasi-newton, or gradient, the paper's engine, to compare with
+    #[arg(long, value_name = "ENGINE", default_value_t, value_parser = engine)]
+    engine: smooth::Engine,
+    /// Write the costs after each sweep, with its time, as CSV
+    #[arg(long, value_name = "T.csv")]
+    trace: Option<PathBuf>,
     /// Most sweeps over the active nodes
     #[arg(long, value_name = "N", default_value_t = 200)]
     max_sweeps: usize,
@@ -120,6 +127,11 @@ fn share(text: &str) -> Result<f64, String> {
     value.ok_or_else(|| format!("{text:?} is not between 0 and 1"))
 }
 
+fn engine(text: &str) -> Result<smooth::Engine, String> {
+    let known = smooth::Engine::ALL.into_iter().find(|engine| engine.name() == text);
+    known.ok_or_else(|| format!("{text:?} is no engine: give quasi-newton or gradient"))
+}
+
 fn msh_version(text: &str) -> Result<msh::Version, String> {
     match text {
         "4.1" => Ok(msh::Version::V4_1),
@@ -154,6 +166,7 @@ impl Options {
                 alpha: self.alpha,
                 max_sweeps: self.max_sweeps,
                 survey_factor: usize::from(self.survey_factor),
+                engine: self.engine,
             },
         }
     }
@@ -164,8 +177,8 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     if let Some(output) = &options.output {
         formats::check_output(output)?;
     }
-    if let Some(report) = &options.report {
-        formats::check_folder(report)?;
+    for path in options.report.iter().chain(&options.trace) {
+        formats::check_folder(path)?;
     }
     if let Some(threads) = options.threads {
         rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global()?;
@@ -175,7 +188,11 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
         return dry_run(&job, options.report.as_deref());
     };
     let mut teller = Teller::new(options.quiet, options.time_limit.map(Duration::from_secs_f64))?;
-    let curved = pipeline::curve(&job, &mut teller);
+    let mut trace = Trace::new(&mut teller);
+    let curved = pipeline::curve(&job, &mut trace);
+    if let (Some(path), Ok(curved)) = (&options.trace, &curved) {
+        trace.write(path, &curved.smoothed)?;
+    }
     teller.finish();
     let curved = curved?;
     let report = report(&job, &curved);

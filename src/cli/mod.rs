@@ -12,6 +12,7 @@ mod link;
 mod points;
 mod progress;
 mod project;
+mod trace;
 mod validate;
 
 use std::ffi::OsString;

@@ -30,9 +30,9 @@ pub(super) struct Weights {
 
 /// Tables for all elements of one cell.
 pub(super) struct Kernel {
-    cell: Cell,
-    order: Order,
-    survey: Survey,
+    pub(super) cell: Cell,
+    pub(super) order: Order,
+    pub(super) survey: Survey,
 }
 
 /// An element as the kernel sees it: nodes relative to the first corner.
