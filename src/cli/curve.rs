@@ -196,7 +196,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     teller.finish();
     let curved = curved?;
     let report = report(&job, &curved);
-    let certified = report.certified;
+    let certified = report.certified && curved.walls.hold();
     if certified || options.keep_invalid {
         write(options, output, &curved)?;
     }
@@ -240,7 +240,7 @@ fn write(options: &Options, output: &Path, curved: &Curved) -> Result<(), Failur
 }
 
 fn exit_code(curved: &Curved) -> u8 {
-    if !curved.certificate.holds() {
+    if !curved.certificate.holds() || !curved.walls.hold() {
         NOT_CERTIFIED
     } else if curved.smoothed.stopped {
         STOPPED
