@@ -29,7 +29,7 @@ impl Engine {
     pub(super) fn round(self) -> usize {
         match self {
             Engine::QuasiNewton => 10,
-            Engine::Gradient => 50, // its sweeps are short and many
+            Engine::Gradient => 20, // its sweeps are short and many
         }
     }
 }

@@ -20,8 +20,9 @@ use super::{Constraint, Freedom};
 use crate::element::corner_tets;
 use crate::quality::{c_wcn_slope, corner_frame, nodal};
 
-/// Longest step, as a share of the inscribed radius.
-const FRACTION: f64 = 0.25;
+/// Longest step, as a share of the inscribed radius. Of 0.02, 0.05, 0.1, 0.25 and 0.5 the best on wing_sharp at scale 0.4, P2,
+/// at the threshold 0.95: min C_JAC 0.778 after 97 sweeps, 0.770, 0.771, 0.753 and 0.691 after 200 with the others.
+const FRACTION: f64 = 0.05;
 /// What a node's steps are multiplied by after its cost fell, and after it rose.
 const CAUTION: [f64; 2] = [0.5, 1.2];
 /// Elements that one task evaluates.
@@ -202,4 +203,40 @@ fn radii(objective: &Objective) -> Vec<f64> {
         }
     }
     radii
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::element::{Cell, Order};
+    use crate::smooth::kernel::tests::bent;
+
+    /// The cost of one node of a single element, and its slope.
+    fn cost(kernel: &Kernel, points: &[DVec3], targets: &[DVec3], node: usize) -> (f64, DVec3) {
+        let mut nodes = vec![[Share::NONE; 2]; points.len()];
+        shares(kernel, &Element { points, targets, cut: 0 }, true, &mut Scratch::default(), &mut nodes);
+        let [(wcn, wcn_slope), (jac, jac_slope)] = nodes[node].map(|share| share.cost());
+        (0.4 * wcn + 0.6 * jac, wcn_slope * 0.4 + jac_slope * 0.6)
+    }
+
+    #[test]
+    fn slopes_of_nodal_costs_have_their_order() {
+        for cell in Cell::VOLUME {
+            for order in Order::all().skip(1) {
+                let kernel = Kernel::new(cell, order, order.get());
+                let (points, targets) = bent(cell, order);
+                for node in [0, points.len() / 2, points.len() - 1] {
+                    let d = DVec3::new(0.2, -0.15, 0.1);
+                    let (value, slope) = cost(&kernel, &points, &targets, node);
+                    let remainder = |h: f64| {
+                        let mut moved = points.clone();
+                        moved[node] += d * h;
+                        (cost(&kernel, &moved, &targets, node).0 - value - h * slope.dot(d)).abs()
+                    };
+                    let (coarse, fine) = (remainder(2e-5), remainder(1e-5));
+                    assert!(fine < 0.3 * coarse + 1e-13, "{cell} {order} node {node}: {coarse:e}, {fine:e}");
+                }
+            }
+        }
+    }
 }

@@ -107,12 +107,12 @@ impl Kernel {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::element::lattice;
 
     /// A curved element: the lattice bent by a smooth map and shrunk, so that no sample is near the cap at J = J_c.
-    fn bent(cell: Cell, order: Order) -> (Vec<DVec3>, Vec<DVec3>) {
+    pub(in super::super) fn bent(cell: Cell, order: Order) -> (Vec<DVec3>, Vec<DVec3>) {
         let targets: Vec<DVec3> = lattice(cell, order)
             .iter()
             .map(|n| DVec3::from(n.map(|x| f64::from(x) / order.get() as f64)) * DVec3::new(1.0, 0.8, 0.3))
