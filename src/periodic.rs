@@ -90,6 +90,16 @@ impl Ties {
         }
     }
 
+    /// Gives both sides of every pair the lesser value.
+    pub fn least(&self, values: &mut [f64]) {
+        for _ in 0..2 {
+            for &(slave, lead, _) in &self.images {
+                let least = values[slave.index()].min(values[lead.index()]);
+                (values[slave.index()], values[lead.index()]) = (least, least);
+            }
+        }
+    }
+
     /// The largest distance of a node from its image.
     #[must_use]
     pub fn farthest(&self, places: &[DVec3]) -> f64 {

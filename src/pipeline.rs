@@ -13,11 +13,12 @@ use crate::certify::{self, Certificate, WallFace, Walls};
 use crate::element::Order;
 use crate::elevate::{Elevated, elevate};
 use crate::formats;
+use crate::ladder::{Climbed, Ladder};
 use crate::mesh::{Mesh, TooMany};
 use crate::periodic::Ties;
 use crate::perturb::perturb;
 use crate::project::{CadConstraint, Projected, project};
-use crate::retreat::{GivenUp, retreat};
+use crate::retreat::GivenUp;
 use crate::smooth::{self, Problem, Smoothed, smooth};
 
 /// Elements that an error lists by number.
@@ -217,15 +218,21 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
     );
     let mut smoothed =
         smooth(&problem, &constraint, &job.smoothing, &mut places, |progress| clock.observer.progress(&progress));
-    elevated.mesh.points = places;
 
     clock.step(Step::Certify);
-    let Elevated { mut mesh, linear_nodes, .. } = elevated;
-    let first = certify::mesh(&mesh, Some(&straight[..linear_nodes]), &certify::Settings::default());
-    let (given_up, certificate) = retreat(&mut mesh, &straight, linear_nodes, &boundary, &association, &ties, first);
-    if !given_up.is_empty() {
-        smoothed.survey(&Problem::new(&mesh, &straight), &mesh.points, job.smoothing.survey_factor);
-    }
+    let ladder = Ladder {
+        elevated: &mut elevated,
+        boundary: &boundary,
+        association: &association,
+        ties: &ties,
+        projected: &mut projected,
+        settings: &job.smoothing,
+        freeze_walls: job.freeze_walls,
+        freeze_linear: job.freeze_linear,
+    };
+    let Climbed { given_up, certificate } =
+        ladder.climb(places, &mut smoothed, |progress| clock.observer.progress(&progress));
+    let Elevated { mesh, linear_nodes, .. } = elevated;
     let walls = walls(&mesh, &straight, &boundary, &association);
     Ok(Curved {
         mesh,
@@ -269,7 +276,7 @@ pub fn association(job: &Job) -> Result<Summary, PipelineError> {
     let (tied, cad) = tie(job, &linear, &boundary, read_model(job)?)?;
     let mut summary =
         associate::summary(&tied.source, &linear, &boundary, &cad.model, &tied.claims, tied.inference.as_ref());
-    summary.notes = tied.association.notes;
+    summary.notes = linear.notes.iter().cloned().chain(tied.association.notes).collect();
     Ok(summary)
 }
 

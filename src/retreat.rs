@@ -80,7 +80,7 @@ fn take_back(mesh: &Mesh, ties: &Ties, failing: &[usize], shares: &mut [f64]) ->
 }
 
 /// The faces tied to the CAD that have a node with less than its whole displacement.
-fn given_up(mesh: &Mesh, boundary: &Boundary, association: &Association, shares: &[f64]) -> Vec<GivenUp> {
+pub(crate) fn given_up(mesh: &Mesh, boundary: &Boundary, association: &Association, shares: &[f64]) -> Vec<GivenUp> {
     let mut faces = Vec::new();
     for (face, own) in boundary.faces.iter().enumerate() {
         let block = &mesh.blocks[own.block];

@@ -15,7 +15,7 @@ fn climb(threads: &str) -> (Vec<u8>, [f64; 2], usize) {
     let how = args!["--engine", "gradient", "--threshold", "0.95", "--max-sweeps", "40", "--trace", trace];
     sagitta(mesh.into_iter().chain(how).chain(args!["--threads", threads])).expect(0);
     let report = json(&report);
-    let smallest = ["start", "end"].map(|when| number(&report["smoothing"][when]["c_jac"]));
+    let smallest = ["start", "end"].map(|when| number(&report, &format!("/smoothing/{when}/c_jac")));
     let rows = std::fs::read_to_string(&trace).unwrap().lines().count();
     (std::fs::read(&output).unwrap(), smallest, rows)
 }

@@ -17,6 +17,7 @@ mod bezier;
 mod boxes;
 mod certificate;
 mod chart;
+pub mod child;
 mod closed_form;
 mod curve;
 mod finish;

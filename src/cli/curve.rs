@@ -7,12 +7,13 @@ use std::time::Duration;
 use cad::ReadOptions;
 use clap::Args;
 
+use super::form::Form;
 use super::progress::Teller;
 use super::trace::Trace;
 use super::{DONE, Failure, GIVEN_UP, NOT_CERTIFIED, STOPPED, print, write_json};
 use crate::associate::Choice;
 use crate::element::Order;
-use crate::formats::{self, WriteOptions, msh};
+use crate::formats;
 use crate::pipeline::{self, Curved, Job};
 use crate::report::{fields, report};
 use crate::smooth;
@@ -20,7 +21,7 @@ use crate::smooth;
 /// Options of `sagitta curve`.
 #[derive(Args)]
 pub(super) struct Options {
-    /// The linear mesh: Gmsh MSH 4.1 or 2.2
+    /// The linear mesh: MSH, CGNS, UGRID, SU2, VTU, legacy VTK or PLOT3D
     mesh: PathBuf,
     /// The CAD it was made on: STEP, IGES or BREP
     #[arg(long, value_name = "FILE")]
@@ -31,7 +32,7 @@ pub(super) struct Options {
     /// Polynomial order of the curved mesh: 2, 3 or 4
     #[arg(long, value_name = "P", value_parser = order)]
     order: Order,
-    /// The curved mesh: .msh for solvers, .vtu for pictures
+    /// The curved mesh: .msh or .cgns for solvers, .vtu for pictures
     #[arg(short, long, value_name = "OUT", required_unless_present = "dry_run")]
     output: Option<PathBuf>,
     /// Tell what lies on what, and stop there
@@ -82,15 +83,8 @@ pub(super) struct Options {
     /// Write the mesh even if not every element is proven valid
     #[arg(long)]
     keep_invalid: bool,
-    /// VTU: leave the boundary elements out, for readers that refuse mixed dimensions
-    #[arg(long)]
-    volume_only: bool,
-    /// Version of the MSH file
-    #[arg(long, value_name = "4.1|2.2", default_value = "4.1", value_parser = msh_version)]
-    msh_version: msh::Version,
-    /// MSH: write text rather than binary
-    #[arg(long)]
-    ascii: bool,
+    #[command(flatten)]
+    form: Form,
     /// Seconds after which reading the CAD is given up
     #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = positive)]
     cad_timeout: f64,
@@ -130,14 +124,6 @@ fn share(text: &str) -> Result<f64, String> {
 fn engine(text: &str) -> Result<smooth::Engine, String> {
     let known = smooth::Engine::ALL.into_iter().find(|engine| engine.name() == text);
     known.ok_or_else(|| format!("{text:?} is no engine: give quasi-newton or gradient"))
-}
-
-fn msh_version(text: &str) -> Result<msh::Version, String> {
-    match text {
-        "4.1" => Ok(msh::Version::V4_1),
-        "2.2" => Ok(msh::Version::V2_2),
-        _ => Err(format!("{text:?} is no version that is written: give 4.1 or 2.2")),
-    }
 }
 
 impl Options {
@@ -187,7 +173,8 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let Some(output) = options.output.as_ref().filter(|_| !options.dry_run) else {
         return dry_run(&job, options.report.as_deref());
     };
-    let mut teller = Teller::new(options.quiet, options.time_limit.map(Duration::from_secs_f64))?;
+    let limit = options.time_limit.map(Duration::from_secs_f64);
+    let mut teller = Teller::new(options.quiet).stoppable(limit)?;
     let mut trace = Trace::new(&mut teller);
     let curved = pipeline::curve(&job, &mut trace);
     if let (Some(path), Ok(curved)) = (&options.trace, &curved) {
@@ -227,15 +214,7 @@ fn dry_run(job: &Job, report: Option<&Path>) -> Result<u8, Failure> {
 }
 
 fn write(options: &Options, output: &Path, curved: &Curved) -> Result<(), Failure> {
-    let fields = fields(curved);
-    let encoding = if options.ascii { msh::Encoding::Ascii } else { msh::Encoding::Binary };
-    let how = WriteOptions {
-        msh_version: options.msh_version,
-        msh_encoding: encoding,
-        volume_only: options.volume_only,
-        fields: &fields,
-    };
-    formats::write(output, &curved.mesh, &how)?;
+    formats::write(output, &curved.mesh, &options.form.with(&fields(curved)))?;
     Ok(())
 }
 

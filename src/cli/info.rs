@@ -51,9 +51,10 @@ fn kind(path: &Path) -> Result<Kind, Failure> {
     let open = std::fs::File::open(path).and_then(|file| file.take(4096).read_to_end(&mut head));
     open.map_err(|error| format!("{}: cannot be read: {error}", path.display()))?;
     let text = head.trim_ascii_start();
-    let is_mesh = text.starts_with(b"$MeshFormat") || text.starts_with(b"$Comments");
+    if formats::is_mesh(path)? {
+        return Ok(Kind::Mesh);
+    }
     Ok(match text {
-        _ if is_mesh => Kind::Mesh,
         [b'<', ..] | [0xef, 0xbb, 0xbf, b'<', ..] => Kind::Linkage,
         _ => Kind::Cad,
     })
@@ -79,6 +80,9 @@ fn mesh(mesh: &Mesh) -> Result<String, Failure> {
     }
     for (entity, faces) in patches {
         writeln!(text, "  {entity}: {faces} faces {}", mesh.names_of(entity).join(","))?;
+    }
+    for note in &mesh.notes {
+        writeln!(text, "  note: {note}")?;
     }
     Ok(text)
 }

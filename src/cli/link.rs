@@ -16,7 +16,7 @@ const MAX_OFFSET: f64 = 1e-3;
 /// Options of `sagitta link`.
 #[derive(Args)]
 pub(super) struct Options {
-    /// The linear mesh
+    /// The linear mesh: MSH, CGNS, UGRID, SU2, VTU, legacy VTK or PLOT3D
     mesh: PathBuf,
     /// The CAD it was made on: STEP, IGES or BREP
     #[arg(long, value_name = "FILE")]
@@ -75,7 +75,8 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let mut text = Vec::new();
     linkage_schema::write(&document, &mut text)?;
     formats::write_bytes(&options.output, &text)?;
-    let summary = associate::summary(source, &mesh, &boundary, &model, &claims, inference.as_ref());
+    let mut summary = associate::summary(source, &mesh, &boundary, &model, &claims, inference.as_ref());
+    summary.notes.extend(mesh.notes.iter().cloned().chain(model.losses()));
     if let Some(path) = &options.report {
         write_json(path, &summary)?;
     }

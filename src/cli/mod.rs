@@ -4,8 +4,10 @@
 //! 4 not certified (`project`: some feet not proven); 5 stopped early, certified. Results go to stdout, progress and errors to stderr.
 
 mod check;
+mod convert;
 mod curve;
 mod explain;
+mod form;
 mod groups;
 mod info;
 mod link;
@@ -20,6 +22,8 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+
+use crate::formats::cgns;
 
 /// Done, everything certified and on the CAD.
 const DONE: u8 = 0;
@@ -54,6 +58,7 @@ Examples:
   sagitta groups fixtures/weeble/weeble.step
   sagitta project fixtures/weeble/weeble.step fixtures/samples/points.csv \\
       --group face:2,face:3 -o feet.csv --report feet.json
+  sagitta convert weeble_p3.msh -o weeble_p3.cgns
 
 Exit codes: 0 done and certified, or clean; 1 findings (validate only);
 2 could not run; 3 certified with some faces not on the CAD; 4 not certified
@@ -75,6 +80,9 @@ enum Command {
     /// Certify any mesh of order 1 to 4: is every element's Jacobian positive everywhere?
     #[command(after_help = EXAMPLES)]
     Check(check::Options),
+    /// Write a mesh in another format, with its patches and groups
+    #[command(after_help = EXAMPLES)]
+    Convert(convert::Options),
     /// Write the linkage file of a mesh: which of its faces, edges and points lie on which CAD entities
     #[command(after_help = EXAMPLES)]
     Link(link::Options),
@@ -98,10 +106,13 @@ enum Command {
 /// Runs the program with its arguments, the first of which is its name.
 #[must_use]
 pub fn run(arguments: Vec<OsString>) -> ExitCode {
-    if let [_, word, path] = arguments.as_slice()
-        && word == cad::READER_SUBCOMMAND
-    {
-        return cad::serve_reader(Path::new(path));
+    if let [_, word, path] = arguments.as_slice() {
+        if word == cad::READER_SUBCOMMAND {
+            return cad::serve_reader(Path::new(path));
+        }
+        if word == cgns::READER_SUBCOMMAND {
+            return cgns::serve_reader(Path::new(path));
+        }
     }
     let program = match Program::try_parse_from(arguments) {
         Ok(program) => program,
@@ -115,6 +126,7 @@ pub fn run(arguments: Vec<OsString>) -> ExitCode {
     let outcome = match program.command {
         Command::Curve(options) => curve::run(&options),
         Command::Check(options) => check::run(&options),
+        Command::Convert(options) => convert::run(&options),
         Command::Link(options) => link::run(&options),
         Command::Validate(options) => validate::run(&options),
         Command::Explain(options) => explain::run(&options),

@@ -57,7 +57,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     if let Some(threads) = options.threads {
         rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global()?;
     }
-    let teller = Teller::new(options.quiet, None)?;
+    let teller = Teller::new(options.quiet);
     let outcome = project(options, &teller);
     teller.finish();
     let (feet, report) = outcome?;

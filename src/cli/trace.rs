@@ -55,6 +55,7 @@ impl Observer for Trace<'_> {
 
     fn progress(&mut self, progress: &Progress) -> bool {
         self.rows.push((self.seconds(), *progress));
+        self.end = self.end.map(|_| self.seconds()); // the ladder smooths again
         self.teller.progress(progress)
     }
 }

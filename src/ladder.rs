@@ -1,0 +1,215 @@
+//! What is done where elements are not proven valid after smoothing (design §7): never a worse mesh.
+//!
+//! 1. Smooth again, with surveys twice as dense.
+//! 2. Take the wall's displacement back around the failing elements, at first by half, more from round to round, with a
+//!    share that falls smoothly along the wall. The volume is carried along as by the first perturbation, so that layers
+//!    move whole, and is smoothed again; nodes that are off the CAD stay where they were put.
+//! 3. [`retreat`], element by element, which ends in a valid mesh whatever came before.
+
+use glam::DVec3;
+
+use crate::associate::{Association, Boundary, Host};
+use crate::certify::{self, Certificate};
+use crate::elevate::Elevated;
+use crate::mesh::NodeId;
+use crate::periodic::Ties;
+use crate::perturb::perturb;
+use crate::project::{CadConstraint, Projected};
+use crate::retreat::{GivenUp, given_up, retreat};
+use crate::smooth::{self, Anchor, Constraint, Freedom, Problem, Smoothed, smooth};
+
+/// Rounds of the second rung; the share that stays is halved from one to the next, and none is left in the last.
+const ROUNDS: usize = 4;
+/// Reach of the first round, in distances to the wall plus the failing element's size.
+const REACH: f64 = 2.0;
+/// Sweeps of one smoothing on the ladder.
+const SWEEPS: usize = 60;
+
+/// The mesh on its way to a proof.
+pub struct Ladder<'a> {
+    /// The straight mesh of order p.
+    pub elevated: &'a mut Elevated,
+    /// Its boundary.
+    pub boundary: &'a Boundary,
+    /// What lies on which CAD group.
+    pub association: &'a Association,
+    /// Periodic pairs.
+    pub ties: &'a Ties,
+    /// Hosts and displacements of the boundary nodes.
+    pub projected: &'a mut Projected,
+    /// The smoother's settings.
+    pub settings: &'a smooth::Settings,
+    /// Hold nodes on curved walls.
+    pub freeze_walls: bool,
+    /// Hold linear nodes.
+    pub freeze_linear: bool,
+}
+
+/// What the ladder led to.
+pub struct Climbed {
+    /// Wall faces that are off the CAD.
+    pub given_up: Vec<GivenUp>,
+    /// The proof.
+    pub certificate: Certificate,
+}
+
+impl Ladder<'_> {
+    /// Makes the smoothed places valid, and leaves them in `elevated.mesh.points`.
+    pub fn climb(
+        mut self,
+        mut places: Vec<DVec3>,
+        smoothed: &mut Smoothed,
+        mut watch: impl FnMut(smooth::Progress) -> bool,
+    ) -> Climbed {
+        let straight = self.elevated.mesh.points.clone();
+        let linear_nodes = self.elevated.linear_nodes;
+        let mut shares = vec![1.0; straight.len()];
+        let mut certificate = self.certified(&mut places, &straight);
+        for rung in 0..=ROUNDS {
+            if certificate.holds() || smoothed.stopped {
+                break;
+            }
+            if rung > 0 {
+                self.take_back(rung, &certificate, &straight, &mut places, &mut shares);
+            }
+            self.smooth_again(smoothed, &straight, &shares, &mut places, &mut watch);
+            certificate = self.certified(&mut places, &straight);
+        }
+        self.elevated.mesh.points = places;
+        let mesh = &mut self.elevated.mesh;
+        let untouched = certificate.holds() && shares.iter().all(|&s| s == 1.0);
+        let mut off = given_up(mesh, self.boundary, self.association, &shares);
+        let (more, certificate) =
+            retreat(mesh, &straight, linear_nodes, self.boundary, self.association, self.ties, certificate);
+        off.retain(|own| more.iter().all(|other| other.face != own.face));
+        off.extend(more);
+        off.sort_by_key(|own| own.face);
+        if !untouched {
+            smoothed.survey(&Problem::new(mesh, &straight), &mesh.points, self.settings.survey_factor);
+        }
+        Climbed { given_up: off, certificate }
+    }
+
+    /// What is proven of the mesh with its nodes at `places`.
+    fn certified(&mut self, places: &mut Vec<DVec3>, straight: &[DVec3]) -> Certificate {
+        let mesh = &mut self.elevated.mesh;
+        std::mem::swap(&mut mesh.points, places);
+        let linear = &straight[..self.elevated.linear_nodes];
+        let certificate = certify::mesh(mesh, Some(linear), &certify::Settings::default());
+        std::mem::swap(&mut mesh.points, places);
+        certificate
+    }
+
+    fn smooth_again(
+        &self,
+        smoothed: &mut Smoothed,
+        straight: &[DVec3],
+        shares: &[f64],
+        places: &mut Vec<DVec3>,
+        watch: &mut impl FnMut(smooth::Progress) -> bool,
+    ) {
+        let (association, projected, linear) = (self.association, &*self.projected, self.elevated.linear_nodes);
+        let wall = CadConstraint::new(
+            association,
+            straight,
+            projected,
+            self.ties,
+            linear,
+            self.freeze_walls,
+            self.freeze_linear,
+        );
+        let settings = smooth::Settings {
+            survey_factor: 2 * self.settings.survey_factor,
+            max_sweeps: SWEEPS.min(self.settings.max_sweeps),
+            ..self.settings.clone()
+        };
+        let problem = Problem::new(&self.elevated.mesh, straight);
+        let again = smooth(&problem, &Held { wall, shares }, &settings, places, watch);
+        smoothed.sweeps += again.sweeps;
+        smoothed.stopped |= again.stopped;
+        smoothed.costs = again.costs;
+        smoothed.end = again.end;
+    }
+
+    /// Takes the wall's displacement back around the elements that are not proven valid, and carries the volume along.
+    fn take_back(
+        &mut self,
+        round: usize,
+        certificate: &Certificate,
+        straight: &[DVec3],
+        places: &mut [DVec3],
+        shares: &mut [f64],
+    ) {
+        let spots = self.spots(certificate, straight, round);
+        let keep = if round == ROUNDS { 0.0 } else { 0.5 };
+        let before = perturb(self.elevated, self.boundary, self.association, self.projected, self.ties);
+        let share = |n: usize| spots.iter().map(|spot| spot.share(straight[n], keep)).fold(1.0, f64::min);
+        let mut own: Vec<f64> = (0..straight.len()).map(|n| if self.on_wall(n) { share(n) } else { 1.0 }).collect();
+        self.ties.least(&mut own);
+        for (n, share) in own.into_iter().enumerate() {
+            if share < 1.0 {
+                shares[n] *= share;
+                self.projected.displacement[n] *= share;
+                places[n] = straight[n] + (places[n] - straight[n]) * share;
+            }
+        }
+        let after = perturb(self.elevated, self.boundary, self.association, self.projected, self.ties);
+        for n in (0..straight.len()).filter(|&n| !self.on_wall(n)) {
+            places[n] += after[n] - before[n];
+        }
+        self.ties.apply(places);
+    }
+
+    fn on_wall(&self, node: usize) -> bool {
+        let host = self.projected.hosts[node];
+        matches!(host, Host::Surface(_) | Host::Curve(_)) && self.association.plane_of(host).is_none()
+    }
+
+    fn spots(&self, certificate: &Certificate, straight: &[DVec3], round: usize) -> Vec<Spot> {
+        let mesh = &self.elevated.mesh;
+        let elements: Vec<&[NodeId]> = mesh.blocks_of(3).flat_map(|(_, block)| block.elements(mesh.order)).collect();
+        let wall: Vec<DVec3> = (0..straight.len()).filter(|&n| self.on_wall(n)).map(|n| straight[n]).collect();
+        let spot = |element: usize| {
+            let nodes = elements[element];
+            let middle = nodes.iter().map(|n| straight[n.index()]).sum::<DVec3>() / nodes.len() as f64;
+            let size = nodes.iter().map(|n| straight[n.index()].distance(middle)).fold(0.0, f64::max);
+            let nearest = wall.iter().map(|w| w.distance_squared(middle)).fold(f64::INFINITY, f64::min).sqrt();
+            Spot { middle, reach: REACH * round as f64 * (nearest + size) }
+        };
+        certificate.failures.iter().map(|judged| spot(judged.element)).collect()
+    }
+}
+
+/// A place around which the wall is taken back.
+struct Spot {
+    middle: DVec3,
+    reach: f64,
+}
+
+impl Spot {
+    /// What stays of the displacement at `x`: `keep` within half the reach, all beyond it, smooth between.
+    fn share(&self, x: DVec3, keep: f64) -> f64 {
+        let t = (2.0 * x.distance(self.middle) / self.reach - 1.0).clamp(0.0, 1.0);
+        keep + (1.0 - keep) * t * t * (3.0 - 2.0 * t)
+    }
+}
+
+/// The CAD's constraint, and nodes off the CAD held where they are.
+struct Held<'a> {
+    wall: CadConstraint<'a>,
+    shares: &'a [f64],
+}
+
+impl Constraint for Held<'_> {
+    fn freedom(&self, node: NodeId, at: DVec3) -> Freedom {
+        if self.shares[node.index()] < 1.0 { Freedom::Fixed } else { self.wall.freedom(node, at) }
+    }
+
+    fn restrict(&self, node: NodeId, from: DVec3, wish: DVec3) -> DVec3 {
+        self.wall.restrict(node, from, wish)
+    }
+
+    fn anchor(&self, node: NodeId) -> Option<Anchor> {
+        self.wall.anchor(node).filter(|_| self.shares[node.index()] >= 1.0)
+    }
+}
