@@ -18,7 +18,7 @@ SAGITTA := $(TARGET)/release/sagitta
 
 # The steps of a target run in their order, also under -j.
 .NOTPARALLEL:
-.PHONY: help setup setup-build build demo venv test lint unit bench oracle table bench-cases consumers figures doc
+.PHONY: help setup setup-build build demo venv test lint unit bench oracle table engines bench-cases consumers figures doc
 
 help: ## this list
 	@echo "sagitta curves linear viscous CFD meshes onto their CAD. Targets:"
@@ -74,6 +74,9 @@ oracle: setup-build ## closest points beside OCCT's own searches and dense grids
 
 table: build venv ## the README's table: the fixtures curved, and judged by other code; minutes
 	"$(SAGITTA_PYTHON)" tests/judge/table.py $(SAGITTA)
+
+engines: build venv ## the engines side by side on the weeble and the wing: fixtures/pictures/engines.png and a table; 4 minutes
+	"$(SAGITTA_PYTHON)" tests/pictures/engines.py $(SAGITTA) fixtures/pictures/engines.png
 
 consumers: setup build ## curved meshes given to Gmsh, meshio, MFEM, PyFR, PyHOPE, VTK and cgnscheck, and what they find; minutes
 	@WANTED=tests/consumers/requirements.txt VENV=.venv-consumers PYTHON="$(PYTHON)" .ci/venv

@@ -7,9 +7,9 @@ use cad::{Model, ReadOptions};
 use glam::DVec3;
 
 use crate::associate::{
-    self, AssociateError, Association, Boundary, Choice, LinkageError, Summary, TieError, UnknownPatch,
+    self, AssociateError, Association, Boundary, Choice, Host, LinkageError, Summary, TieError, UnknownPatch,
 };
-use crate::certify::{self, Certificate};
+use crate::certify::{self, Certificate, WallFace, Walls};
 use crate::element::Order;
 use crate::elevate::{Elevated, elevate};
 use crate::formats;
@@ -160,6 +160,8 @@ pub struct Curved {
     pub smoothed: Smoothed,
     /// What is proven of the mesh.
     pub certificate: Certificate,
+    /// What is proven of the faces on the CAD.
+    pub walls: Walls,
     /// Boundary faces that are not on the CAD, so that the elements behind them are valid.
     pub given_up: Vec<GivenUp>,
     /// The CAD's unit, as its file names it.
@@ -231,6 +233,7 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
     let Climbed { given_up, certificate } =
         ladder.climb(places, &mut smoothed, |progress| clock.observer.progress(&progress));
     let Elevated { mesh, linear_nodes, .. } = elevated;
+    let walls = walls(&mesh, &straight, &boundary, &association);
     Ok(Curved {
         mesh,
         straight,
@@ -240,11 +243,27 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
         projected,
         smoothed,
         certificate,
+        walls,
         given_up,
         cad_unit: cad.model.unit().name.clone(),
         cad_scale: cad.scale,
         seconds: clock.finish(),
     })
+}
+
+/// Judges the curved faces that are tied to the CAD.
+fn walls(mesh: &Mesh, straight: &[DVec3], boundary: &Boundary, association: &Association) -> Walls {
+    let tied = |&f: &usize| matches!(association.faces[f], Host::Surface(_));
+    let numbers: Vec<usize> = (0..boundary.faces.len()).filter(tied).collect();
+    let face = |f: usize| {
+        let (own, order) = (&boundary.faces[f], mesh.order);
+        let block = &mesh.blocks[own.block];
+        let stride = block.stride(order);
+        let points = mesh.points_of(&block.nodes[own.element * stride..][..stride]).collect();
+        let corners = boundary.corners[f].iter().map(|n| straight[n.index()]).collect();
+        WallFace { cell: own.cell, order, points, corners }
+    };
+    certify::walls(&numbers, face, &certify::Settings::default())
 }
 
 /// What would lie on what: reads and associates, and goes no further.

@@ -51,7 +51,7 @@ pub(super) struct Means {
 }
 
 impl Form {
-    /// The tables of a cell with three dimensions.
+    /// The tables of a cell with two or three dimensions.
     pub(super) fn of(cell: Cell, order: Order) -> &'static Form {
         static TABLES: [[OnceLock<Form>; 4]; 8] = [const { [const { OnceLock::new() }; 4] }; 8];
         TABLES[cell as usize][order.get() - 1].get_or_init(|| Form::build(cell, order))

@@ -37,7 +37,7 @@ pub struct Judge {
 /// A power of two and the shift that bring an element to size 1, and its largest components then.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frame {
-    scale: f64,
+    pub(super) scale: f64,
     largest: [f64; 3],
 }
 
@@ -206,19 +206,26 @@ pub(super) fn frame(shape: &Shape) -> Option<Frame> {
         && shape.cell.dimension() == 3;
     let &first = points.first().filter(|_| counted)?;
     let largest = points.iter().fold(DVec3::ZERO, |largest, &x| largest.max((x - first).abs()));
-    let size = largest.max_element();
     let finite = points.iter().all(|x| x.is_finite());
-    // Exponents of the reciprocal stay normal in this range.
-    if !finite || !(1e-250..1e250).contains(&size) {
-        return None;
+    if finite { Frame::of(largest) } else { None }
+}
+
+impl Frame {
+    /// The frame of a shape with these largest components; `None` where they are nothing, or too much to scale.
+    pub(super) fn of(largest: DVec3) -> Option<Frame> {
+        let size = largest.max_element();
+        // Exponents of the reciprocal stay normal in this range.
+        if !(1e-250..1e250).contains(&size) {
+            return None;
+        }
+        let exponent = size.to_bits() >> 52;
+        let scale = f64::from_bits((2046 - exponent) << 52);
+        Some(Frame { scale, largest: (largest * scale).to_array() })
     }
-    let exponent = size.to_bits() >> 52;
-    let scale = f64::from_bits((2046 - exponent) << 52);
-    Some(Frame { scale, largest: (largest * scale).to_array() })
 }
 
 /// Shifts points by the first and scales them.
-fn load<T: Real>(into: &mut Vec<[T; 3]>, points: &[DVec3], scale: f64) {
+pub(super) fn load<T: Real>(into: &mut Vec<[T; 3]>, points: &[DVec3], scale: f64) {
     let Some(first) = points.first().map(|x| x.to_array()) else { return };
     let scale = T::of(scale);
     into.clear();
@@ -228,11 +235,11 @@ fn load<T: Real>(into: &mut Vec<[T; 3]>, points: &[DVec3], scale: f64) {
     }));
 }
 
-fn largest<T: Real>(nodes: &[[T; 3]]) -> [f64; 3] {
+pub(super) fn largest<T: Real>(nodes: &[[T; 3]]) -> [f64; 3] {
     nodes.iter().fold([0.0; 3], |l, x| [0, 1, 2].map(|axis| f64::max(l[axis], x[axis].rounded().abs())))
 }
 
-fn absolute(values: &[f64]) -> f64 {
+pub(super) fn absolute(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |largest, x| largest.max(x.abs()))
 }
 

@@ -10,6 +10,7 @@
 mod certificate;
 mod contest;
 mod elements;
+mod face;
 mod form;
 mod judge;
 #[cfg(test)]
@@ -32,6 +33,7 @@ mod verdict;
 
 pub use certificate::{Certificate, Judged, Tally, certify, mesh};
 pub use elements::{Buffer, Elements, MeshElements};
+pub use face::{FaceFinding, WallFace, Walls, walls};
 pub use judge::{Judge, Shape};
 pub use verdict::{Bounds, Finding, Method, Verdict};
 

@@ -9,6 +9,7 @@ use clap::Args;
 
 use super::form::Form;
 use super::progress::Teller;
+use super::trace::Trace;
 use super::{DONE, Failure, GIVEN_UP, NOT_CERTIFIED, STOPPED, print, write_json};
 use crate::associate::Choice;
 use crate::element::Order;
@@ -64,6 +65,12 @@ pub(super) struct Options {
     /// Weight of shape against size, equation (2); lower it to 0.3 where Jacobians stay small [default: (p-1)/p]
     #[arg(long, value_name = "0..1", value_parser = share)]
     alpha: Option<f64>,
+    /// What moves the nodes: quasi-newton, or gradient, the paper's engine, to compare with
+    #[arg(long, value_name = "ENGINE", default_value_t, value_parser = engine)]
+    engine: smooth::Engine,
+    /// Write the costs after each sweep, with its time, as CSV
+    #[arg(long, value_name = "T.csv")]
+    trace: Option<PathBuf>,
     /// Most sweeps over the active nodes
     #[arg(long, value_name = "N", default_value_t = 200)]
     max_sweeps: usize,
@@ -114,6 +121,11 @@ fn share(text: &str) -> Result<f64, String> {
     value.ok_or_else(|| format!("{text:?} is not between 0 and 1"))
 }
 
+fn engine(text: &str) -> Result<smooth::Engine, String> {
+    let known = smooth::Engine::ALL.into_iter().find(|engine| engine.name() == text);
+    known.ok_or_else(|| format!("{text:?} is no engine: give quasi-newton or gradient"))
+}
+
 impl Options {
     fn patches(&self) -> Choice {
         match (&self.curve[..], &self.straight[..]) {
@@ -140,6 +152,7 @@ impl Options {
                 alpha: self.alpha,
                 max_sweeps: self.max_sweeps,
                 survey_factor: usize::from(self.survey_factor),
+                engine: self.engine,
             },
         }
     }
@@ -150,8 +163,8 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     if let Some(output) = &options.output {
         formats::check_output(output)?;
     }
-    if let Some(report) = &options.report {
-        formats::check_folder(report)?;
+    for path in options.report.iter().chain(&options.trace) {
+        formats::check_folder(path)?;
     }
     if let Some(threads) = options.threads {
         rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global()?;
@@ -162,11 +175,15 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     };
     let limit = options.time_limit.map(Duration::from_secs_f64);
     let mut teller = Teller::new(options.quiet).stoppable(limit)?;
-    let curved = pipeline::curve(&job, &mut teller);
+    let mut trace = Trace::new(&mut teller);
+    let curved = pipeline::curve(&job, &mut trace);
+    if let (Some(path), Ok(curved)) = (&options.trace, &curved) {
+        trace.write(path, &curved.smoothed)?;
+    }
     teller.finish();
     let curved = curved?;
     let report = report(&job, &curved);
-    let certified = report.certified;
+    let certified = report.certified && curved.walls.hold();
     if certified || options.keep_invalid {
         write(options, output, &curved)?;
     }
@@ -202,7 +219,7 @@ fn write(options: &Options, output: &Path, curved: &Curved) -> Result<(), Failur
 }
 
 fn exit_code(curved: &Curved) -> u8 {
-    if !curved.certificate.holds() {
+    if !curved.certificate.holds() || !curved.walls.hold() {
         NOT_CERTIFIED
     } else if curved.smoothed.stopped {
         STOPPED

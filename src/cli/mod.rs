@@ -14,6 +14,7 @@ mod link;
 mod points;
 mod progress;
 mod project;
+mod trace;
 mod validate;
 
 use std::ffi::OsString;

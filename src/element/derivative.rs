@@ -4,6 +4,9 @@
 //! with `s = 1 - c` and layers `x_m` (`knowledge/maths.md` §3): `X_a / s = p sum B^(p-1)_m(s) [Delta_a x_(m+1)]`,
 //! `X_b / s` likewise, `X_c = p sum B^(p-1)_m(s) [E x_m - x_(m+1)]` with the degree elevation `E`; their determinant is
 //! that of the Jacobian matrix, a polynomial of the chart up to and including the apex.
+//!
+//! Triangles and quadrilaterals have two columns; the third is a constant vector, given as one more node after their own,
+//! so that the determinant is `(x_u x x_v) . m`.
 
 use super::bernstein::binomial;
 use super::{Cell, Net, Order, basis, lattice};
@@ -19,13 +22,16 @@ pub struct Derivative {
     pub denominator: f64,
 }
 
-/// The columns of the Jacobian matrix of an element with three dimensions.
+/// The columns of the Jacobian matrix of an element with three dimensions, or of a face with its vector `m`.
 #[must_use]
 pub fn derivatives(cell: Cell, order: Order) -> [Derivative; 3] {
     let (matrix, denominator) = integer_to_bernstein(cell, order);
     let nodes = lattice(cell, order);
     std::array::from_fn(|axis| {
         let net = Net::control(cell, order).derivative(axis);
+        if axis >= cell.dimension() {
+            return Derivative { net, rows: vec![vec![(nodes.len(), 1.0)]], denominator: 1.0 };
+        }
         let rows = net.indices().into_iter().map(|index| {
             let mut row = vec![0.0; nodes.len()];
             for (at, factor) in difference(cell, order, axis, net, index) {

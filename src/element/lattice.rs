@@ -24,6 +24,18 @@ pub fn face_lattice(cell: Cell, face: &Face, order: Order) -> Vec<[u8; 3]> {
     lattice(face.cell, order).iter().map(|&at| embed(cell, face, p, at)).collect()
 }
 
+/// For each edge of a cell, its nodes in the order of [`Cell::Line`]: both ends, then the inner ones from the first on.
+#[must_use]
+pub fn edge_nodes(cell: Cell, order: Order) -> &'static [Vec<usize>] {
+    static TABLES: [[OnceLock<Vec<Vec<usize>>>; 4]; 8] = [const { [const { OnceLock::new() }; 4] }; 8];
+    TABLES[cell as usize][order.get() - 1].get_or_init(|| {
+        let inner = order.get() - 1;
+        let first = |edge: usize| cell.corner_count() + edge * inner;
+        let edges = cell.edges().iter().enumerate();
+        edges.map(|(e, ends)| ends.map(usize::from).into_iter().chain(first(e)..first(e) + inner).collect()).collect()
+    })
+}
+
 fn build(cell: Cell, p: u8) -> Vec<[u8; 3]> {
     if p == 0 {
         return vec![[0, 0, 0]];

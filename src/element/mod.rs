@@ -19,7 +19,7 @@ mod volume;
 
 pub use cell::{Cell, Face, Order, OrderOutOfRange};
 pub use extension::interior_extension;
-pub use lattice::{face_lattice, lattice};
+pub use lattice::{edge_nodes, face_lattice, lattice};
 pub use net::Net;
 pub use orientation::{canonical, interior_count, interior_slots, interior_start, mirrored};
 pub use samples::Samples;

@@ -25,16 +25,23 @@ impl Net {
     #[must_use]
     pub fn control(cell: Cell, order: Order) -> Net {
         let p = order.get();
-        Net { cell, degree: if cell == Cell::Pyramid { [0, 0, p] } else { [p; 3] } }
+        let degree = match cell {
+            Cell::Pyramid => [0, 0, p],
+            Cell::Triangle | Cell::Quad => [p, p, 0],
+            _ => [p; 3],
+        };
+        Net { cell, degree }
     }
 
     /// The net of the derivative of a control net by one axis of the unit cell (pyramid: of the columns that
-    /// [`super::derivative`] explains).
+    /// [`super::derivative`] explains). A triangle's or quadrilateral's third is a constant.
     #[must_use]
     pub fn derivative(self, axis: usize) -> Net {
         let [p, .., top] = self.degree;
         let degree = match self.cell {
             Cell::Tet => [p - 1; 3],
+            Cell::Triangle | Cell::Quad if axis == 2 => [0; 3],
+            Cell::Triangle => [p - 1, p - 1, 0],
             Cell::Prism if axis < 2 => [p - 1, p - 1, top],
             Cell::Prism => [p, p, top - 1],
             Cell::Pyramid => [usize::from(axis != 0), usize::from(axis != 1), top - 1],
@@ -68,7 +75,7 @@ impl Net {
         let [p, q, n] = self.degree;
         match self.cell {
             Cell::Tet => i + j + k <= p,
-            Cell::Prism => i + j <= p && k <= n,
+            Cell::Triangle | Cell::Prism => i + j <= p && k <= n,
             Cell::Pyramid => k <= n && i <= n - k + p && j <= n - k + q,
             _ => i <= p && j <= q && k <= n,
         }
@@ -91,7 +98,7 @@ impl Net {
         let [p, q, n] = self.degree;
         match self.cell {
             Cell::Tet => binomial(p, i) * binomial(p - i, j) * binomial(p - i - j, k),
-            Cell::Prism => binomial(p, i) * binomial(p - i, j) * binomial(n, k),
+            Cell::Triangle | Cell::Prism => binomial(p, i) * binomial(p - i, j) * binomial(n, k),
             Cell::Pyramid => binomial(n, k) * binomial(n - k + p, i) * binomial(n - k + q, j),
             _ => binomial(p, i) * binomial(q, j) * binomial(n, k),
         }
@@ -157,6 +164,8 @@ mod tests {
         assert_eq!(counts(Cell::Hex), [27, 216, 729, 1728]);
         assert_eq!(counts(Cell::Prism), [9, 90, 324, 792]);
         assert_eq!(counts(Cell::Pyramid), [9, 86, 280, 645]);
+        assert_eq!(counts(Cell::Triangle), [1, 6, 15, 28]);
+        assert_eq!(counts(Cell::Quad), [4, 16, 36, 64]);
     }
 
     #[test]

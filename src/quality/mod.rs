@@ -6,8 +6,10 @@
 mod cost;
 mod shape;
 mod size;
+mod turning;
 
 pub use cost::{alpha, blend, nodal};
-pub use shape::{Cut, c_wcn, corner_frame, element_c_wcn};
+pub use shape::{Cut, c_wcn, c_wcn_slope, corner_frame, element_c_wcn};
 pub(crate) use shape::{cofactor, squared};
 pub use size::{element_c_jac, jacobians};
+pub use turning::{Columns, Turning};

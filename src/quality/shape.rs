@@ -23,6 +23,20 @@ pub fn c_wcn(t: DMat3) -> f64 {
     if norm > 0.0 { 3.0 * det / norm } else { 0.0 }
 }
 
+/// [`c_wcn`] and its derivative by `T`; at `det T = 0`, where there are two, that of the inverted branch.
+#[must_use]
+pub fn c_wcn_slope(t: DMat3) -> (f64, DMat3) {
+    let (det, cofactor) = (t.determinant(), cofactor(t));
+    let (first, second) = (squared(t), squared(cofactor));
+    if det <= 0.0 || first * second == 0.0 {
+        return (det.min(0.0), cofactor);
+    }
+    let cost = 3.0 * det / (first * second).sqrt();
+    // d|T|^2 = 2 T, d|cof T|^2 = 2 (|T|^2 T - T T^T T), d det = cof T.
+    let bend = (t * first - t * (t.transpose() * t)) * (1.0 / second);
+    (cost, (cofactor * (1.0 / det) - t * (1.0 / first) - bend) * cost)
+}
+
 /// Edge vectors of a corner tetrahedron as columns: equation (4)'s matrix.
 #[must_use]
 pub fn corner_frame(tet: [u8; 4], points: &[DVec3]) -> DMat3 {
@@ -80,6 +94,17 @@ mod tests {
             prop_assume!(a.determinant() * w.determinant() > 1e-2 && w.determinant().abs() > 1e-2);
             let by_inverse = 3.0 / (squared(a * w.inverse()) * squared(w * a.inverse())).sqrt();
             prop_assert!((c_wcn(a * w.inverse()) - by_inverse).abs() < 1e-9);
+        }
+
+        #[test]
+        fn slopes_have_their_order(t in matrix(), d in matrix()) {
+            let (value, slope) = c_wcn_slope(t);
+            // Away from the kink at det T = 0, and from costs that turn within a step.
+            prop_assume!(t.determinant().abs() > 0.1 && value.abs() > 0.1);
+            prop_assert!((value - c_wcn(t)).abs() < 1e-12);
+            let along: f64 = slope.to_cols_array().iter().zip(d.to_cols_array()).map(|(s, d)| s * d).sum();
+            let remainder = |h: f64| (c_wcn(t + d * h) - value - h * along).abs();
+            prop_assert!(remainder(1e-4) < 0.3 * remainder(2e-4) + 1e-12, "{} {}", remainder(1e-4), remainder(2e-4));
         }
 
         #[test]

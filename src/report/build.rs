@@ -7,14 +7,15 @@ use rayon::prelude::*;
 
 use super::{
     CellReport, CertificateReport, GivenUpFace, Input, Nodes, PatchReport, Projections, Report, SCHEMA,
-    SmoothingReport, StepReport, WorstElement,
+    SmoothingReport, StepReport, TurningReport, WallFailure, WallReport, WorstElement,
 };
 use crate::associate::Host;
-use crate::certify::{Certificate, Judged, Verdict};
+use crate::certify::{Certificate, FaceFinding, Judged, Verdict};
 use crate::element::{Cell, Order, Samples, basis};
 use crate::formats::{Field, Support, Values};
 use crate::mesh::{EntityKey, Mesh};
 use crate::pipeline::{Curved, Job};
+use crate::quality::Columns;
 use crate::retreat::GivenUp;
 
 /// Elements listed as worst.
@@ -44,6 +45,8 @@ pub fn report(job: &Job, curved: &Curved) -> Report {
         patches: patches(curved),
         unlinked_faces: curved.association.faces.iter().filter(|h| !linked(h)).count(),
         given_up: curved.given_up.iter().map(|given| given_up(curved, given)).collect(),
+        walls: walls(curved),
+        turning: turning(curved),
         certificate: CertificateReport::new(mesh, &curved.certificate),
         smoothing: SmoothingReport {
             sweeps: curved.smoothed.sweeps,
@@ -57,6 +60,27 @@ pub fn report(job: &Job, curved: &Curved) -> Report {
         peak_memory: peak_memory(),
         threads: rayon::current_num_threads(),
     }
+}
+
+fn walls(curved: &Curved) -> WallReport {
+    let walls = &curved.walls;
+    let failure = |finding: &FaceFinding| {
+        let face = &curved.boundary.faces[finding.face];
+        WallFailure {
+            element: curved.mesh.blocks[face.block].tags[face.element],
+            entity: face.entity.to_string(),
+            verdict: if finding.verdict == Verdict::Undecided { "undecided" } else { "folded" },
+            place: finding.place.to_array(),
+        }
+    };
+    let (faces, folded, failed) = (walls.faces, walls.folded(), walls.failures.len());
+    let failures = walls.failures.iter().map(failure).collect();
+    WallReport { faces, valid: faces - failed, folded, undecided: failed - folded, failures }
+}
+
+fn turning(curved: &Curved) -> TurningReport {
+    let columns = Columns::new(&curved.mesh, &curved.straight);
+    TurningReport { curved: columns.curved(&curved.mesh.points), linear: columns.linear(&curved.straight) }
 }
 
 fn cells(curved: &Curved) -> Vec<CellReport> {

@@ -10,6 +10,7 @@ mod text;
 
 use serde::Serialize;
 
+use crate::quality::Turning;
 use crate::smooth::Summary;
 
 pub use build::{fields, report};
@@ -42,6 +43,10 @@ pub struct Report {
     pub unlinked_faces: usize,
     /// Boundary faces taken off the CAD, so that the elements behind them are valid.
     pub given_up: Vec<GivenUpFace>,
+    /// Whether the faces on the CAD are free of folds.
+    pub walls: WallReport,
+    /// How lines off the wall turn from layer to layer.
+    pub turning: TurningReport,
     /// Bounds of the mesh's smallest J / J_c and scaled Jacobian.
     pub certificate: CertificateReport,
     /// What the smoother did.
@@ -130,6 +135,43 @@ pub struct GivenUpFace {
     pub share: f64,
     /// Its middle.
     pub place: [f64; 3],
+}
+
+/// Curved faces on the CAD: folded where the normal leans by 90 degrees or more against the linear face's.
+#[derive(Clone, Debug, Serialize)]
+pub struct WallReport {
+    /// How many.
+    pub faces: usize,
+    /// Faces proven to be free of folds.
+    pub valid: usize,
+    /// Faces proven to fold.
+    pub folded: usize,
+    /// Faces of which neither is proven.
+    pub undecided: usize,
+    /// All faces that are not proven to be free of folds.
+    pub failures: Vec<WallFailure>,
+}
+
+/// A face to look at.
+#[derive(Clone, Debug, Serialize)]
+pub struct WallFailure {
+    /// Its number in the file.
+    pub element: u64,
+    /// The mesh entity that it belongs to.
+    pub entity: String,
+    /// `folded` or `undecided`.
+    pub verdict: &'static str,
+    /// A point of the fold.
+    pub place: [f64; 3],
+}
+
+/// Turning angles of layer columns ([`crate::quality::Columns`]).
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct TurningReport {
+    /// Of the curved mesh, between the tangents of its edges.
+    pub curved: Turning,
+    /// Of the same columns in the linear mesh.
+    pub linear: Turning,
 }
 
 /// The certificate of the whole mesh.

@@ -23,7 +23,9 @@ impl fmt::Display for Report {
         for note in &self.notes {
             writeln!(f, "note: {note}")?;
         }
+        self.turning(f)?;
         self.given_up(f)?;
+        self.walls(f)?;
         self.certificate.verdict(self.certified, f)
     }
 }
@@ -52,6 +54,32 @@ impl Report {
         }
         if self.unlinked_faces > 0 {
             writeln!(f, "{} boundary faces are not tied to the CAD", self.unlinked_faces)?;
+        }
+        Ok(())
+    }
+
+    fn turning(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (curved, linear) = (&self.turning.curved, &self.turning.linear);
+        if curved.angles == 0 {
+            return Ok(());
+        }
+        writeln!(
+            f,
+            "lines off the wall turn from layer to layer by {:.2} degrees at most in 99 % of {} places, {:.2} at worst \
+             (linear mesh: {:.2}, {:.2})",
+            curved.p99, curved.angles, curved.max, linear.p99, linear.max
+        )
+    }
+
+    fn walls(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let w = &self.walls;
+        if w.failures.is_empty() {
+            return writeln!(f, "walls: none of {} faces folds (proven)", w.faces);
+        }
+        writeln!(f, "walls: {} of {} faces FOLD, {} are undecided", w.folded, w.faces, w.undecided)?;
+        for face in w.failures.iter().take(LISTED) {
+            let [x, y, z] = face.place;
+            writeln!(f, "  {} face {} of {} near ({x:.6}, {y:.6}, {z:.6})", face.verdict, face.element, face.entity)?;
         }
         Ok(())
     }

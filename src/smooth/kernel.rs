@@ -30,9 +30,9 @@ pub(super) struct Weights {
 
 /// Tables for all elements of one cell.
 pub(super) struct Kernel {
-    cell: Cell,
-    order: Order,
-    survey: Survey,
+    pub(super) cell: Cell,
+    pub(super) order: Order,
+    pub(super) survey: Survey,
 }
 
 /// An element as the kernel sees it: nodes relative to the first corner.
@@ -107,12 +107,12 @@ impl Kernel {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::element::lattice;
 
     /// A curved element: the lattice bent by a smooth map and shrunk, so that no sample is near the cap at J = J_c.
-    fn bent(cell: Cell, order: Order) -> (Vec<DVec3>, Vec<DVec3>) {
+    pub(in super::super) fn bent(cell: Cell, order: Order) -> (Vec<DVec3>, Vec<DVec3>) {
         let targets: Vec<DVec3> = lattice(cell, order)
             .iter()
             .map(|n| DVec3::from(n.map(|x| f64::from(x) / order.get() as f64)) * DVec3::new(1.0, 0.8, 0.3))

@@ -3,6 +3,8 @@
 mod block;
 mod density;
 mod descend;
+mod engine;
+mod gradient;
 mod kernel;
 mod objective;
 mod patch;
@@ -13,6 +15,7 @@ mod survey;
 use glam::DVec3;
 
 use crate::mesh::NodeId;
+pub use engine::Engine;
 pub use problem::{ElementCost, Problem};
 pub use stages::{Progress, Settings, Smoothed, Summary, smooth};
 

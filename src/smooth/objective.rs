@@ -28,7 +28,7 @@ pub(super) struct Objective<'a> {
 
 /// Buffers of a task.
 #[derive(Default)]
-struct Gathered {
+pub(super) struct Gathered {
     points: Vec<DVec3>,
     targets: Vec<DVec3>,
     scratch: Scratch,
@@ -115,7 +115,7 @@ impl Objective<'_> {
         self.anchors.iter().map(spring).sum()
     }
 
-    fn gather<'s>(
+    pub(super) fn gather<'s>(
         &self,
         run: &Run,
         element: usize,

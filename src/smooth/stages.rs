@@ -12,6 +12,8 @@ use glam::DVec3;
 
 use super::density::Density;
 use super::descend::descend;
+use super::engine::Engine;
+use super::gradient::climb;
 use super::kernel::Weights;
 use super::objective::Objective;
 use super::patch::Patch;
@@ -21,8 +23,6 @@ use crate::quality;
 
 /// A survey is too coarse for an element where it misses this much of its `C_JAC`.
 const BLIND: f64 = 0.01;
-/// Sweeps between two surveys.
-const ROUND: usize = 10;
 /// A descent ends at a sweep that gains less than this share of the objective.
 const GAIN: f64 = 1e-4;
 /// A stage ends when two rounds in a row raise the smallest cost by less.
@@ -60,11 +60,13 @@ pub struct Settings {
     pub max_sweeps: usize,
     /// Density of the closing survey: this many times `p` divisions an edge. Default 4.
     pub survey_factor: usize,
+    /// What moves the nodes.
+    pub engine: Engine,
 }
 
 impl Default for Settings {
     fn default() -> Settings {
-        Settings { threshold: 0.8, alpha: None, max_sweeps: 200, survey_factor: 4 }
+        Settings { threshold: 0.8, alpha: None, max_sweeps: 200, survey_factor: 4, engine: Engine::default() }
     }
 }
 
@@ -81,6 +83,8 @@ pub struct Progress {
     pub active_nodes: usize,
     /// Smallest cost at the last survey, either component.
     pub worst: f64,
+    /// Smallest costs of all elements at the last survey, `C_WCN` and `C_JAC`.
+    pub costs: [f64; 2],
     /// Middle of the element that has it.
     pub at: DVec3,
     /// Elements with a cost of 0 or less at the last survey.
@@ -167,9 +171,9 @@ pub fn smooth(
         watch: &mut watch,
     };
     if start.c_wcn <= 0.0 {
-        run.stage(Stage::Shape, x);
+        run.work(Stage::Shape, x);
     }
-    run.stage(Stage::Full, x);
+    run.work(Stage::Full, x);
     *x = run.best.x;
     Smoothed { sweeps: run.sweeps, stopped: run.stopped, costs: run.best.costs, start, end: run.best.summary }
 }
@@ -215,6 +219,34 @@ struct Run<'a, 'p> {
 }
 
 impl Run<'_, '_> {
+    /// One stage by the engine that was asked for.
+    fn work(&mut self, stage: Stage, x: &mut Vec<DVec3>) {
+        match self.settings.engine {
+            Engine::QuasiNewton => self.stage(stage, x),
+            Engine::Gradient => self.papers_stage(stage, x),
+        }
+    }
+
+    /// One stage as the paper has it, from the best state so far: all elements below the threshold, until there are none;
+    /// shape alone only as long as that gains something.
+    fn papers_stage(&mut self, stage: Stage, x: &mut Vec<DVec3>) {
+        x.clone_from(&self.best.x);
+        self.costs.clone_from(&self.best.costs);
+        let mut idle = 0;
+        while !self.stopped && self.sweeps < self.settings.max_sweeps && (stage == Stage::Full || idle < 2) {
+            let (before, first) = (self.lowest(stage), self.sweeps);
+            let active = activate(self.problem, &self.costs, stage, self.settings.threshold, RINGS);
+            self.densify(&active, x);
+            let patch = Patch::new(self.problem, &active, &self.density);
+            self.round(stage, &patch, x);
+            self.survey(&patch.elements, x);
+            idle = if self.lowest(stage) - before < PROGRESS { idle + 1 } else { 0 };
+            if self.sweeps == first {
+                break; // every node is above the threshold
+            }
+        }
+    }
+
     /// One stage, from the best state so far.
     fn stage(&mut self, stage: Stage, x: &mut Vec<DVec3>) {
         x.clone_from(&self.best.x);
@@ -300,14 +332,18 @@ impl Run<'_, '_> {
         let anchors = (0..patch.nodes.len()).filter_map(anchored).collect();
         let objective = Objective { patch, kernels, cuts, weights, anchors };
         let progress = self.progress(stage, patch);
-        let left = ROUND.min(self.settings.max_sweeps - self.sweeps);
+        let left = self.settings.engine.round().min(self.settings.max_sweeps - self.sweeps);
         let first = self.sweeps;
         let (watch, stopped) = (&mut *self.watch, &mut self.stopped);
         let mut local: Vec<DVec3> = patch.nodes.iter().map(|n| x[n.index()]).collect();
-        self.sweeps += descend(&objective, self.constraint, &mut local, left, GAIN, |sweep| {
+        let tell = |sweep| {
             *stopped = !watch(Progress { sweep: first + sweep, ..progress });
             !*stopped
-        });
+        };
+        self.sweeps += match self.settings.engine {
+            Engine::QuasiNewton => descend(&objective, self.constraint, &mut local, left, GAIN, tell),
+            Engine::Gradient => climb(&objective, self.constraint, &mut local, left, self.settings.threshold, tell),
+        };
         for (node, place) in patch.nodes.iter().zip(local) {
             x[node.index()] = place;
         }
@@ -318,12 +354,14 @@ impl Run<'_, '_> {
         let element = patch.elements.iter().copied().min_by(worst).unwrap_or(0);
         let nodes = self.problem.nodes(element);
         let middle: DVec3 = nodes.iter().map(|n| self.problem.straight[n.index()]).sum();
+        let summary = Summary::of(&self.costs);
         Progress {
             stage: if stage == Stage::Shape { 1 } else { 2 },
             sweep: self.sweeps,
             max_sweeps: self.settings.max_sweeps,
             active_nodes: patch.movable.iter().filter(|&&m| m).count(),
             worst: stage.cost(&self.costs[element]),
+            costs: [summary.c_wcn, summary.c_jac],
             at: middle / nodes.len() as f64,
             inverted: self.costs.iter().filter(|c| stage.cost(c) <= 0.0).count(),
         }

@@ -104,6 +104,28 @@ impl Survey {
         value
     }
 
+    /// Tells `take` of every point and node: node, `C_JAC` at the point, its slope by the node (none where it is 1).
+    pub(super) fn sensitivities(
+        &self,
+        points: &[DVec3],
+        targets: &[DVec3],
+        scratch: &mut Scratch,
+        mut take: impl FnMut(usize, f64, DVec3),
+    ) {
+        self.look(points, targets, true, scratch);
+        for s in 0..self.count {
+            let (capped, inverse) = (scratch.ratio[s] >= 1.0, 1.0 / scratch.jc[s]);
+            let row = |a: usize| DVec3::from([0, 1, 2].map(|b| scratch.cofactors[(3 * a + b) * self.padded + s]));
+            let rows = [0, 1, 2].map(row);
+            let table = &self.curved[(s / LANES) * self.nodes * 3 * LANES..];
+            for (node, slopes) in table.chunks_exact(3 * LANES).take(self.nodes).enumerate() {
+                let g = DVec3::from([0, 1, 2].map(|b| slopes[b * LANES + s % LANES]));
+                let slope = if capped { DVec3::ZERO } else { DVec3::from(rows.map(|row| row.dot(g) * inverse)) };
+                take(node, scratch.ratio[s].min(1.0), slope);
+            }
+        }
+    }
+
     /// Fills ratios, `J_c` and, where wanted, cofactors.
     fn look(&self, points: &[DVec3], targets: &[DVec3], cofactors: bool, scratch: &mut Scratch) {
         scratch.jc.resize(self.padded, 0.0);

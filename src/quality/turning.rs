@@ -1,0 +1,264 @@
+//! How smooth lines off the wall are: the angles by which they turn from layer to layer.
+//!
+//! A *column* begins at a boundary node with the edge off the boundary that is nearest to the boundary's normal, and goes
+//! on, node by node, along the edge that continues its direction best. It lasts as long as the layers do: its edges are
+//! shorter than [`FLAT`] times the boundary's edges at its foot, and no edge turns by more than [`SHARP`] in the linear
+//! mesh. At each of its inner nodes the curved line turns by the angle between the tangents of the two edges that meet there.
+
+use glam::DVec3;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::element::{Cell, basis, edge_nodes};
+use crate::mesh::{Mesh, NodeId};
+
+/// Longest edge of a column, as a share of the mean boundary edge at its foot.
+const FLAT: f64 = 0.5;
+/// Cosine of the largest turn of a column in the linear mesh, and of its first edge off the normal: 45 degrees.
+const SHARP: f64 = std::f64::consts::FRAC_1_SQRT_2;
+/// Most edges of a column.
+const LONGEST: usize = 1000;
+
+/// How columns turn, in degrees.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Turning {
+    /// Number of columns with at least one inner node.
+    pub columns: usize,
+    /// Number of angles: inner nodes of columns.
+    pub angles: usize,
+    /// The angle that 99 % of the angles do not exceed.
+    pub p99: f64,
+    /// The largest angle.
+    pub max: f64,
+}
+
+/// An edge of the volume, seen from one of its ends.
+#[derive(Clone, Copy)]
+struct Ray {
+    from: NodeId,
+    to: NodeId,
+    /// An element that has the edge: first node in its block's connectivity, block, and edge of the cell.
+    start: usize,
+    block: u32,
+    edge: u8,
+}
+
+/// The columns of a mesh: each the rays that follow each other.
+pub struct Columns<'a> {
+    mesh: &'a Mesh,
+    columns: Vec<Vec<Ray>>,
+}
+
+impl<'a> Columns<'a> {
+    /// Finds the columns of `mesh`, an elevated mesh, in its unperturbed state: `straight` are the places of its nodes then.
+    /// Its elements of two dimensions are the boundary.
+    #[must_use]
+    pub fn new(mesh: &'a Mesh, straight: &[DVec3]) -> Columns<'a> {
+        let rays = rays(mesh);
+        let feet = feet(mesh, straight);
+        let columns = feet.par_iter().map(|foot| column(&rays, foot, straight));
+        Columns { mesh, columns: columns.filter(|column| column.len() > 1).collect() }
+    }
+
+    /// The turns of the lines as curves through the nodes at `x`.
+    #[must_use]
+    pub fn curved(&self, x: &[DVec3]) -> Turning {
+        let order = self.mesh.order;
+        let slopes = [0.0, 1.0].map(|s| basis::gradients(Cell::Line, order, [s, 0.0, 0.0]));
+        let tangent = |ray: &Ray, at_end: bool| {
+            let block = &self.mesh.blocks[ray.block as usize];
+            let edge = &edge_nodes(block.cell, order)[usize::from(ray.edge)];
+            let nodes = &block.nodes[ray.start..][..block.stride(order)];
+            let forth = nodes[edge[0]] == ray.from;
+            let table = &slopes[usize::from(at_end == forth)];
+            let along: DVec3 = edge.iter().zip(table).map(|(&n, slope)| x[nodes[n].index()] * slope[0]).sum();
+            if forth { along } else { -along }
+        };
+        self.turning(|below, above| angle(tangent(below, true), tangent(above, false)))
+    }
+
+    /// The turns of the lines as straight edges between the corners at `x`.
+    #[must_use]
+    pub fn linear(&self, x: &[DVec3]) -> Turning {
+        let along = |ray: &Ray| x[ray.to.index()] - x[ray.from.index()];
+        self.turning(|below, above| angle(along(below), along(above)))
+    }
+
+    fn turning(&self, angle: impl Fn(&Ray, &Ray) -> f64 + Sync) -> Turning {
+        let of_column = |column: &'_ Vec<Ray>| column.windows(2).map(|w| angle(&w[0], &w[1])).collect::<Vec<_>>();
+        let mut angles: Vec<f64> = self.columns.par_iter().flat_map_iter(of_column).collect();
+        angles.par_sort_unstable_by(f64::total_cmp);
+        let rank = (angles.len() * 99).div_ceil(100).max(1) - 1;
+        Turning {
+            columns: self.columns.len(),
+            angles: angles.len(),
+            p99: angles.get(rank).copied().unwrap_or(0.0),
+            max: angles.last().copied().unwrap_or(0.0),
+        }
+    }
+}
+
+/// The angle between two vectors, in degrees; exact for small angles too.
+fn angle(a: DVec3, b: DVec3) -> f64 {
+    a.cross(b).length().atan2(a.dot(b)).to_degrees()
+}
+
+/// Both rays of every edge of the volume, by their first node.
+fn rays(mesh: &Mesh) -> Vec<Ray> {
+    let mut rays = Vec::new();
+    for (place, block) in mesh.blocks_of(3) {
+        let stride = block.stride(mesh.order);
+        for (element, nodes) in block.nodes.chunks_exact(stride).enumerate() {
+            for (edge, &ends) in block.cell.edges().iter().enumerate() {
+                let [a, b] = ends.map(|n| nodes[usize::from(n)]);
+                for (from, to) in [(a, b), (b, a)] {
+                    let (start, block, edge) = (element * stride, place as u32, edge as u8);
+                    rays.push(Ray { from, to, start, block, edge });
+                }
+            }
+        }
+    }
+    rays.par_sort_unstable_by_key(|ray| (ray.from, ray.to, ray.block, ray.start));
+    rays.dedup_by_key(|ray| (ray.from, ray.to));
+    rays
+}
+
+/// Where a column may begin.
+struct Foot {
+    node: NodeId,
+    /// Unit normal of the boundary, to either side.
+    normal: DVec3,
+    /// Longest edge of the column.
+    longest: f64,
+    /// Neighbours on the boundary, sorted.
+    ring: Vec<NodeId>,
+}
+
+fn feet(mesh: &Mesh, x: &[DVec3]) -> Vec<Foot> {
+    let mut sides = Vec::new();
+    for (_, block) in mesh.blocks_of(2) {
+        for nodes in block.elements(mesh.order) {
+            let corners = &nodes[..block.cell.corner_count()];
+            for (n, &node) in corners.iter().enumerate() {
+                let (next, last) = (corners[(n + 1) % corners.len()], corners[(n + corners.len() - 1) % corners.len()]);
+                let [at, u, v] = [node, next, last].map(|n| x[n.index()]);
+                sides.push((node, next, last, (u - at).cross(v - at).normalize_or_zero()));
+            }
+        }
+    }
+    sides.sort_by_key(|side| (side.0, side.1, side.2));
+    sides.chunk_by(|a, b| a.0 == b.0).map(|around| foot(around, x)).collect()
+}
+
+fn foot(around: &[(NodeId, NodeId, NodeId, DVec3)], x: &[DVec3]) -> Foot {
+    let node = around[0].0;
+    let mut ring: Vec<NodeId> = around.iter().flat_map(|side| [side.1, side.2]).collect();
+    ring.sort_unstable();
+    ring.dedup();
+    let mean = ring.iter().map(|n| x[n.index()].distance(x[node.index()])).sum::<f64>() / ring.len() as f64;
+    let normal = around.iter().map(|side| side.3).sum::<DVec3>().normalize_or_zero();
+    Foot { node, normal, longest: FLAT * mean, ring }
+}
+
+/// The rays of the column on a foot; empty where there are no layers.
+fn column(rays: &[Ray], foot: &Foot, x: &[DVec3]) -> Vec<Ray> {
+    let along = |ray: &Ray| x[ray.to.index()] - x[ray.from.index()];
+    let from = |node: NodeId| {
+        let first = rays.partition_point(|ray| ray.from < node);
+        let count = rays[first..].partition_point(|ray| ray.from == node);
+        rays[first..first + count].iter().filter(|ray| along(ray).length() < foot.longest)
+    };
+    let straightest = |a: &(f64, &Ray), b: &(f64, &Ray)| a.0.total_cmp(&b.0).then(b.1.to.cmp(&a.1.to));
+    let enough = |&(cosine, _): &(f64, &Ray)| cosine >= SHARP;
+    let rising = from(foot.node).filter(|ray| foot.ring.binary_search(&ray.to).is_err());
+    let first = rising.map(|ray| (along(ray).normalize_or_zero().dot(foot.normal).abs(), ray));
+    let mut column = Vec::new();
+    let mut next = first.max_by(straightest).filter(enough);
+    while let Some((_, ray)) = next.filter(|_| column.len() < LONGEST) {
+        column.push(*ray);
+        let direction = along(ray).normalize_or_zero();
+        let onward = from(ray.to).map(|ray| (along(ray).normalize_or_zero().dot(direction), ray));
+        next = onward.max_by(straightest).filter(enough);
+    }
+    column
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::element::{Order, lattice};
+    use crate::mesh::{Block, EntityKey};
+
+    /// Three hexes of height 0.1 on a unit square, the first's bottom on the boundary:
+    ///
+    /// ```text
+    /// z = 0.3 +-----+
+    ///         |     |   lines off the wall at the square's corners
+    /// z = 0.0 +=====+   wall
+    /// ```
+    fn stack(order: Order) -> Mesh {
+        let p = order.get();
+        let node = |[i, j, k]: [usize; 3]| NodeId::new((k * (p + 1) + j) * (p + 1) + i).unwrap_or_default();
+        let mut points = Vec::new();
+        for k in 0..=3 * p {
+            for (j, i) in (0..=p).flat_map(|j| (0..=p).map(move |i| (j, i))) {
+                points.push(DVec3::new(i as f64, j as f64, 0.1 * k as f64) / p as f64);
+            }
+        }
+        let hexes = (0..3).flat_map(|layer| {
+            lattice(Cell::Hex, order).iter().map(move |at| {
+                let [i, j, k] = at.map(usize::from);
+                node([i, j, k + layer * p])
+            })
+        });
+        let wall = lattice(Cell::Quad, order).iter().map(|at| node(at.map(usize::from)));
+        let block = |cell, tags, nodes| Block {
+            cell,
+            entity: EntityKey::new(cell.dimension() as u8, 1),
+            physical_tags: Vec::new(),
+            tags,
+            nodes,
+        };
+        let blocks = vec![block(Cell::Hex, vec![1, 2, 3], hexes.collect()), block(Cell::Quad, vec![4], wall.collect())];
+        Mesh { order, points, blocks, ..Mesh::default() }
+    }
+
+    #[test]
+    fn straight_columns_do_not_turn() {
+        for order in Order::all() {
+            let mesh = stack(order);
+            let columns = Columns::new(&mesh, &mesh.points);
+            for turning in [columns.curved(&mesh.points), columns.linear(&mesh.points)] {
+                assert_eq!((turning.columns, turning.angles), (4, 8), "{order}");
+                assert!(turning.max < 1e-9, "{order}: {turning:?}");
+            }
+        }
+    }
+
+    /// Each layer's line is the parabola `x += 4 b s (1 - s)`, `s` from 0 to 1 across the layer: its tangents lean by
+    /// `atan(4 b / 0.1)` one way at the top and the other way at the next layer's bottom.
+    #[test]
+    fn kinked_columns_turn_by_the_known_angle() {
+        for order in Order::all().skip(1) {
+            let mesh = stack(order);
+            let bow = 0.01;
+            let bent = |x: &DVec3| {
+                let s = (x.z / 0.1 + 1e-9).fract() - 1e-9;
+                *x + DVec3::X * (4.0 * bow * s * (1.0 - s))
+            };
+            let x: Vec<DVec3> = mesh.points.iter().map(bent).collect();
+            let columns = Columns::new(&mesh, &mesh.points);
+            let expected = 2.0 * (4.0 * bow / 0.1f64).atan().to_degrees();
+            let turning = columns.curved(&x);
+            assert!((turning.max - expected).abs() < 1e-5 && (turning.p99 - expected).abs() < 1e-5, "{turning:?}");
+            assert!(columns.linear(&x).max < 1e-5);
+        }
+    }
+
+    #[test]
+    fn there_are_no_columns_without_layers() {
+        let mut mesh = stack(Order::LINEAR);
+        mesh.points.iter_mut().for_each(|x| x.z *= 10.0);
+        assert_eq!(Columns::new(&mesh, &mesh.points).linear(&mesh.points), Turning::default());
+    }
+}
