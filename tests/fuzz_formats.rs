@@ -3,29 +3,20 @@
 //! This test stands alone in its process: it reads the process' peak of address space.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+#[path = "common/random.rs"]
+mod random;
+
 use std::path::Path;
 
+use random::Random;
 use sagitta::formats::msh;
 
 const MUTATIONS: u64 = 6_000;
 /// Peak address space that all reads together may add; the largest sample has 140 kB.
 const ALLOWANCE_KB: u64 = 64 << 10;
 
-/// Numbers that follow from a seed (SplitMix64, Steele et al. 2014).
-struct Dice(u64);
-
-impl Dice {
-    fn below(&mut self, n: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) % n as u64) as usize
-    }
-}
-
 /// Damages a file in one or two places.
-fn damage(content: &mut Vec<u8>, dice: &mut Dice) {
+fn damage(content: &mut Vec<u8>, dice: &mut Random) {
     for _ in 0..=dice.below(2) {
         let at = dice.below(content.len().max(1)).min(content.len().saturating_sub(1));
         // Half of the damage goes to the head, where the counts stand.
@@ -62,14 +53,13 @@ fn peak() -> Option<u64> {
 
 #[test]
 fn damaged_files_are_answered() {
-    let seed = std::env::var("SAGITTA_SEED").ok().and_then(|s| s.parse().ok()).unwrap_or(20_261_122);
-    println!("seed {seed} (SAGITTA_SEED)");
+    let seed = random::seed(20_261_122);
     let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/samples");
     let mut files: Vec<_> = std::fs::read_dir(dir).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.retain(|file| file.extension().is_some_and(|e| e == "msh"));
     files.sort();
     let samples: Vec<Vec<u8>> = files.iter().map(|file| std::fs::read(file).unwrap()).collect();
-    let mut dice = Dice(seed);
+    let mut dice = Random(seed);
     let before = peak();
     let (mut read, mut refused) = (0, 0);
     for n in 0..MUTATIONS {

@@ -3,6 +3,8 @@
 //! `cargo bench -p sagitta-cad --bench projection [-- CASE]`. Ratios within one run mean something; digits move with the machine.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
+#[path = "../common/iges.rs"]
+#[path = "../common/iges.rs"]
 mod iges;
 
 use cad::{FaceId, Foot, Group, Kind, Model, READER_SUBCOMMAND, ReadOptions};
