@@ -18,7 +18,7 @@ SAGITTA := $(TARGET)/release/sagitta
 
 # The steps of a target run in their order, also under -j.
 .NOTPARALLEL:
-.PHONY: help setup setup-build build demo venv test lint unit bench oracle table doc
+.PHONY: help setup setup-build build demo venv test lint unit bench oracle table bench-cases consumers figures doc
 
 help: ## this list
 	@echo "sagitta curves linear viscous CFD meshes onto their CAD. Targets:"
@@ -74,6 +74,17 @@ oracle: setup-build ## closest points beside OCCT's own searches and dense grids
 
 table: build venv ## the README's table: the fixtures curved, and judged by other code; minutes
 	"$(SAGITTA_PYTHON)" tests/judge/table.py $(SAGITTA)
+
+consumers: setup build ## curved meshes given to Gmsh, meshio, MFEM, PyFR, PyHOPE, VTK and cgnscheck, and what they find; minutes
+	@WANTED=tests/consumers/requirements.txt VENV=.venv-consumers PYTHON="$(PYTHON)" .ci/venv
+	.venv-consumers/bin/python tests/consumers/consume.py $(SAGITTA) | tee $(TARGET)/consumers.md
+
+figures: venv ## what Gmsh, meshio and VTK find in fixtures/samples, and in SAGITTA_SAMPLES=DIR
+	"$(SAGITTA_PYTHON)" tests/judge/figures.py fixtures/samples $(SAGITTA_SAMPLES) > $(TARGET)/figures.json
+	mv $(TARGET)/figures.json fixtures/samples/figures.json
+
+bench-cases: build venv ## curve every case in CASES=DIR (folders of NAME.msh, .step, .meshlink.xml) and judge it; BENCH_OPTIONS=--peer adds Gmsh
+	"$(SAGITTA_PYTHON)" tests/judge/bench_cases.py $(SAGITTA) "$(CASES)" $(BENCH_OPTIONS)
 
 doc: setup-build ## the documentation, in target/doc
 	cargo doc --workspace --no-deps

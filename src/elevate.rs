@@ -105,6 +105,9 @@ impl Builder {
             entities: linear.entities.clone(),
             physical_names: linear.physical_names.clone(),
             periodic: linear.periodic.clone(),
+            conditions: linear.conditions.clone(),
+            zones: linear.zones.clone(),
+            notes: linear.notes.clone(),
         };
         let next_tag = linear.node_tags.iter().max().map_or(1, |tag| tag + 1);
         let carriers = Cell::ALL.iter().map(|&cell| Carriers::new(cell, order)).collect();

@@ -12,9 +12,10 @@ use crate::associate::{Association, Boundary, Host};
 use crate::certify::{self, Certificate};
 use crate::elevate::Elevated;
 use crate::mesh::NodeId;
+use crate::periodic::Ties;
 use crate::perturb::perturb;
 use crate::project::{CadConstraint, Projected};
-use crate::retreat::{GivenUp, retreat};
+use crate::retreat::{GivenUp, given_up, retreat};
 use crate::smooth::{self, Anchor, Constraint, Freedom, Problem, Smoothed, smooth};
 
 /// Rounds of the second rung; the share that stays is halved from one to the next, and none is left in the last.
@@ -32,6 +33,8 @@ pub struct Ladder<'a> {
     pub boundary: &'a Boundary,
     /// What lies on which CAD group.
     pub association: &'a Association,
+    /// Periodic pairs.
+    pub ties: &'a Ties,
     /// Hosts and displacements of the boundary nodes.
     pub projected: &'a mut Projected,
     /// The smoother's settings.
@@ -74,13 +77,17 @@ impl Ladder<'_> {
         }
         self.elevated.mesh.points = places;
         let mesh = &mut self.elevated.mesh;
-        let touched = shares.iter().any(|&s| s < 1.0) || !certificate.holds();
-        let (given_up, certificate) =
-            retreat(mesh, &straight, linear_nodes, self.boundary, self.association, certificate, shares);
-        if touched {
+        let untouched = certificate.holds() && shares.iter().all(|&s| s == 1.0);
+        let mut off = given_up(mesh, self.boundary, self.association, &shares);
+        let (more, certificate) =
+            retreat(mesh, &straight, linear_nodes, self.boundary, self.association, self.ties, certificate);
+        off.retain(|own| more.iter().all(|other| other.face != own.face));
+        off.extend(more);
+        off.sort_by_key(|own| own.face);
+        if !untouched {
             smoothed.survey(&Problem::new(mesh, &straight), &mesh.points, self.settings.survey_factor);
         }
-        Climbed { given_up, certificate }
+        Climbed { given_up: off, certificate }
     }
 
     /// What is proven of the mesh with its nodes at `places`.
@@ -102,8 +109,15 @@ impl Ladder<'_> {
         watch: &mut impl FnMut(smooth::Progress) -> bool,
     ) {
         let (association, projected, linear) = (self.association, &*self.projected, self.elevated.linear_nodes);
-        let wall =
-            CadConstraint::new(association, straight, projected, linear, self.freeze_walls, self.freeze_linear);
+        let wall = CadConstraint::new(
+            association,
+            straight,
+            projected,
+            self.ties,
+            linear,
+            self.freeze_walls,
+            self.freeze_linear,
+        );
         let settings = smooth::Settings {
             survey_factor: 2 * self.settings.survey_factor,
             max_sweeps: SWEEPS.min(self.settings.max_sweeps),
@@ -128,22 +142,22 @@ impl Ladder<'_> {
     ) {
         let spots = self.spots(certificate, straight, round);
         let keep = if round == ROUNDS { 0.0 } else { 0.5 };
-        let before = perturb(self.elevated, self.boundary, self.association, self.projected);
-        for n in 0..straight.len() {
-            if !self.on_wall(n) {
-                continue;
-            }
-            let share = spots.iter().map(|spot| spot.share(straight[n], keep)).fold(1.0, f64::min);
+        let before = perturb(self.elevated, self.boundary, self.association, self.projected, self.ties);
+        let share = |n: usize| spots.iter().map(|spot| spot.share(straight[n], keep)).fold(1.0, f64::min);
+        let mut own: Vec<f64> = (0..straight.len()).map(|n| if self.on_wall(n) { share(n) } else { 1.0 }).collect();
+        self.ties.least(&mut own);
+        for (n, share) in own.into_iter().enumerate() {
             if share < 1.0 {
                 shares[n] *= share;
                 self.projected.displacement[n] *= share;
                 places[n] = straight[n] + (places[n] - straight[n]) * share;
             }
         }
-        let after = perturb(self.elevated, self.boundary, self.association, self.projected);
+        let after = perturb(self.elevated, self.boundary, self.association, self.projected, self.ties);
         for n in (0..straight.len()).filter(|&n| !self.on_wall(n)) {
             places[n] += after[n] - before[n];
         }
+        self.ties.apply(places);
     }
 
     fn on_wall(&self, node: usize) -> bool {

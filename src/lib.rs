@@ -19,7 +19,7 @@
 //!                                      ▼
 //!                                   smooth       stages: shape, then shape + Jacobian; wall nodes slide on the CAD
 //!                                      ▼
-//!                                   certify      a proof of det J > 0 for every element; retreat where one fails
+//!                                   certify      a proof of det J > 0 for every element; ladder, retreat where one fails
 //!                                      ▼
 //!                       curved mesh + report
 //! ```
@@ -27,13 +27,13 @@
 //! The order of the steps stands in [`pipeline`]; each step is a module named after it:
 //!
 //! 1. [`formats`] reads the linear mesh into a [`mesh::Mesh`]; [`cad::Model::read`] reads the CAD in a child process.
-//! 2. [`associate`] ties boundary faces, edges and points to groups of CAD entities, by a linkage file or by entity tags, and holds
-//!    the claims against the CAD.
+//! 2. [`associate`] ties boundary faces, edges and points to groups of CAD entities, by a linkage file, entity tags or geometry, and
+//!    holds the claims against the CAD.
 //! 3. [`elevate`] makes the new nodes at their straight places.
 //! 4. [`project`] spreads the boundary's new nodes and puts them on their groups.
 //! 5. [`perturb`] carries the wall's displacement into planar patches and into the volume.
 //! 6. [`smooth`] lowers an objective made of the paper's costs ([`quality`]), stage by stage, on the active part of the mesh.
-//! 7. [`certify`] proves every element valid, or [`retreat`] takes displacements back until it can.
+//! 7. [`certify`] proves every element valid, or the [`ladder`] is climbed down, to [`retreat`], until it can.
 //! 8. [`report`] tells what came out; [`formats`] writes it.
 //!
 //! [`element`] is the one place that knows cells: their lattices, bases, sub-elements, sample tables and file orders.
@@ -45,7 +45,9 @@ pub mod cli;
 pub mod element;
 pub mod elevate;
 pub mod formats;
+pub mod ladder;
 pub mod mesh;
+pub mod periodic;
 pub mod perturb;
 pub mod pipeline;
 pub mod project;
@@ -53,3 +55,4 @@ pub mod quality;
 pub mod report;
 pub mod retreat;
 pub mod smooth;
+pub mod validate;

@@ -6,15 +6,19 @@ use std::time::Instant;
 use cad::{Model, ReadOptions};
 use glam::DVec3;
 
-use crate::associate::{self, AssociateError, Association, Boundary, Claims, LinkageError};
+use crate::associate::{
+    self, AssociateError, Association, Boundary, Choice, LinkageError, Summary, TieError, UnknownPatch,
+};
 use crate::certify::{self, Certificate};
 use crate::element::Order;
 use crate::elevate::{Elevated, elevate};
 use crate::formats;
+use crate::ladder::{Climbed, Ladder};
 use crate::mesh::{Mesh, TooMany};
+use crate::periodic::Ties;
 use crate::perturb::perturb;
 use crate::project::{CadConstraint, Projected, project};
-use crate::retreat::{GivenUp, retreat};
+use crate::retreat::GivenUp;
 use crate::smooth::{self, Problem, Smoothed, smooth};
 
 /// Elements that an error lists by number.
@@ -27,8 +31,10 @@ pub struct Job {
     pub mesh: PathBuf,
     /// The CAD it was made on.
     pub cad: PathBuf,
-    /// The MeshLink file that ties the two together; without it the mesh's entity tags do.
+    /// The MeshLink file that ties the two together; without it the mesh's entity tags do, or else geometry.
     pub linkage: Option<PathBuf>,
+    /// Which patches are curved.
+    pub patches: Choice,
     /// Order of the curved mesh, 2 to 4.
     pub order: Order,
     /// How far a linear node may be from its CAD entity; share of the mesh's box. Default 1e-3.
@@ -53,6 +59,7 @@ impl Job {
             mesh,
             cad,
             linkage,
+            patches: Choice::All,
             order,
             max_offset: 1e-3,
             freeze_linear: false,
@@ -119,6 +126,8 @@ pub enum PipelineError {
     Associate { mesh: PathBuf, cad: PathBuf, cause: Box<AssociateError> },
     #[error("{mesh}: {cause}", mesh = mesh.display())]
     TooMany { mesh: PathBuf, cause: TooMany },
+    #[error("{mesh}: {cause}", mesh = mesh.display())]
+    UnknownPatch { mesh: PathBuf, cause: UnknownPatch },
     #[error("{mesh}: has no volume elements (tets, pyramids, prisms, hexes): nothing to curve", mesh = mesh.display())]
     NoVolume { mesh: PathBuf },
     #[error("{cad}: has no faces: nothing to curve onto", cad = cad.display())]
@@ -168,25 +177,30 @@ pub struct Curved {
 pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineError> {
     let mut clock = Clock::new(observer);
     clock.step(Step::Read);
-    let linear = read_linear(&job.mesh)?;
-    let model = Model::read(&job.cad, &scaled(job, job.cad_scale.unwrap_or(1.0)))?;
-    if model.faces().is_empty() {
-        return Err(PipelineError::NoFaces { cad: job.cad.clone() });
-    }
+    let mut linear = read_linear(&job.mesh)?;
+    let model = read_model(job)?;
 
     clock.step(Step::Associate);
     let boundary = Boundary::new(&linear);
-    let (tied, association) = tie(job, &linear, &boundary, model)?;
+    let (tied, cad) = tie(job, &linear, &boundary, model)?;
+    let mut association = tied.association;
+    // The linkage file may know of pairs that the mesh file does not.
+    let known: Vec<_> = linear.periodic.iter().map(|pair| pair.slave).collect();
+    linear.periodic.extend(tied.claims.periodic.into_iter().filter(|pair| !known.contains(&pair.slave)));
 
     clock.step(Step::Elevate);
     let mut elevated =
         elevate(&linear, job.order).map_err(|cause| PipelineError::TooMany { mesh: job.mesh.clone(), cause })?;
+    let (ties, notes) = Ties::new(&mut elevated, &boundary, job.freeze_linear);
+    association.notes.extend(notes);
 
     clock.step(Step::Project);
-    let projected = project(&elevated, &boundary, &association, job.freeze_linear);
+    let mut projected = project(&elevated, &boundary, &association, job.freeze_linear);
+    ties.carry(&elevated.mesh.points, &mut projected.displacement);
 
     clock.step(Step::Perturb);
-    let mut places = perturb(&elevated, &boundary, &association, &projected);
+    let mut places = perturb(&elevated, &boundary, &association, &projected, &ties);
+    ties.apply(&mut places);
 
     clock.step(Step::Smooth);
     let straight = elevated.mesh.points.clone();
@@ -195,21 +209,28 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
         &association,
         &straight,
         &projected,
+        &ties,
         elevated.linear_nodes,
         job.freeze_walls,
         job.freeze_linear,
     );
     let mut smoothed =
         smooth(&problem, &constraint, &job.smoothing, &mut places, |progress| clock.observer.progress(&progress));
-    elevated.mesh.points = places;
 
     clock.step(Step::Certify);
-    let Elevated { mut mesh, linear_nodes, .. } = elevated;
-    let first = certify::mesh(&mesh, Some(&straight[..linear_nodes]), &certify::Settings::default());
-    let (given_up, certificate) = retreat(&mut mesh, &straight, linear_nodes, &boundary, &association, first);
-    if !given_up.is_empty() {
-        smoothed.survey(&Problem::new(&mesh, &straight), &mesh.points, job.smoothing.survey_factor);
-    }
+    let ladder = Ladder {
+        elevated: &mut elevated,
+        boundary: &boundary,
+        association: &association,
+        ties: &ties,
+        projected: &mut projected,
+        settings: &job.smoothing,
+        freeze_walls: job.freeze_walls,
+        freeze_linear: job.freeze_linear,
+    };
+    let Climbed { given_up, certificate } =
+        ladder.climb(places, &mut smoothed, |progress| clock.observer.progress(&progress));
+    let Elevated { mesh, linear_nodes, .. } = elevated;
     Ok(Curved {
         mesh,
         straight,
@@ -220,10 +241,32 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
         smoothed,
         certificate,
         given_up,
-        cad_unit: tied.unit,
-        cad_scale: tied.scale,
+        cad_unit: cad.model.unit().name.clone(),
+        cad_scale: cad.scale,
         seconds: clock.finish(),
     })
+}
+
+/// What would lie on what: reads and associates, and goes no further.
+///
+/// # Errors
+/// [`PipelineError`].
+pub fn association(job: &Job) -> Result<Summary, PipelineError> {
+    let linear = read_linear(&job.mesh)?;
+    let boundary = Boundary::new(&linear);
+    let (tied, cad) = tie(job, &linear, &boundary, read_model(job)?)?;
+    let mut summary =
+        associate::summary(&tied.source, &linear, &boundary, &cad.model, &tied.claims, tied.inference.as_ref());
+    summary.notes = linear.notes.iter().cloned().chain(tied.association.notes).collect();
+    Ok(summary)
+}
+
+fn read_model(job: &Job) -> Result<Model, PipelineError> {
+    let model = Model::read(&job.cad, &scaled(job, job.cad_scale.unwrap_or(1.0)))?;
+    if model.faces().is_empty() {
+        return Err(PipelineError::NoFaces { cad: job.cad.clone() });
+    }
+    Ok(model)
 }
 
 /// Reads the linear mesh and refuses what cannot be curved.
@@ -253,34 +296,31 @@ fn scaled(job: &Job, scale: f64) -> ReadOptions {
 }
 
 /// Ties the mesh to its CAD, read again in another unit where the job asks for the unit that fits.
-fn tie(job: &Job, linear: &Mesh, boundary: &Boundary, model: Model) -> Result<(Tied, Association), PipelineError> {
-    let attempt = |model: &Model| -> Result<Association, PipelineError> {
-        let claims = match &job.linkage {
-            Some(path) => associate::read_linkage(path, linear, boundary, model)?,
-            None => Claims::by_tags(linear, boundary, model),
-        };
-        let tied = associate::associate(linear, boundary, model, &claims, job.max_offset);
-        let mut tied = tied.map_err(|cause| refused(&job.mesh, &job.cad, cause))?;
-        if let (Some(path), false) = (&job.linkage, claims.trusted) {
-            let note = "names another CAD file; its numbers were held against this one";
-            tied.notes.push(format!("{} {note}", path.display()));
-        }
-        Ok(tied)
+fn tie(job: &Job, linear: &Mesh, boundary: &Boundary, model: Model) -> Result<(associate::Tied, Cad), PipelineError> {
+    let straight = job.patches.straight(linear, boundary);
+    let straight = straight.map_err(|cause| PipelineError::UnknownPatch { mesh: job.mesh.clone(), cause })?;
+    let attempt = |model: &Model| -> Result<associate::Tied, PipelineError> {
+        let choose = |claims: &mut associate::Claims| claims.leave_straight(boundary, &straight);
+        associate::tie(job.linkage.as_deref(), linear, boundary, model, job.max_offset, &choose).map_err(|error| {
+            match error {
+                TieError::Linkage(error) => error.into(),
+                TieError::Associate(cause) => refused(&job.mesh, &job.cad, cause),
+            }
+        })
     };
     let first = attempt(&model);
     if let (None, Err(PipelineError::Associate { cause, .. })) = (job.cad_scale, &first)
         && let AssociateError::Scale { factor, .. } = **cause
     {
         let model = Model::read(&job.cad, &scaled(job, factor))?;
-        let association = attempt(&model)?;
-        return Ok((Tied { unit: model.unit().name.clone(), scale: factor }, association));
+        return Ok((attempt(&model)?, Cad { model, scale: factor }));
     }
-    Ok((Tied { unit: model.unit().name.clone(), scale: job.cad_scale.unwrap_or(1.0) }, first?))
+    Ok((first?, Cad { model, scale: job.cad_scale.unwrap_or(1.0) }))
 }
 
-/// The unit of the CAD as it was used.
-struct Tied {
-    unit: String,
+/// The CAD as it was used.
+struct Cad {
+    model: Model,
     scale: f64,
 }
 

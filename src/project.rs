@@ -13,6 +13,7 @@ use crate::associate::{Association, Boundary, Host};
 use crate::element::{Cell, Order, interior_count, interior_extension, interior_start};
 use crate::elevate::Elevated;
 use crate::mesh::NodeId;
+use crate::periodic::Ties;
 use crate::smooth::{Anchor, Constraint, Freedom};
 
 /// Places between two nodes of an edge at which its projection is measured.
@@ -86,7 +87,7 @@ impl Projector<'_> {
             (_, _, Some(group)) => {
                 let feet: Vec<Foot> = wishes.iter().map(|&x| group.closest(x, None)).collect();
                 self.result.projections += feet.len();
-                self.result.unproven += feet.iter().filter(|f| !f.proven).count();
+                self.result.unproven += feet.iter().filter(|f| !f.is_proven()).count();
                 feet.iter().map(|f| f.point).collect()
             }
             _ => wishes.to_vec(),
@@ -215,6 +216,7 @@ pub struct CadConstraint<'a> {
     association: &'a Association,
     straight: &'a [DVec3],
     projected: &'a Projected,
+    ties: &'a Ties,
     linear_nodes: usize,
     freeze_walls: bool,
     freeze_linear: bool,
@@ -224,17 +226,18 @@ impl<'a> CadConstraint<'a> {
     /// The constraint of the given hosts.
     ///
     /// Linear nodes on the boundary are held; with `freeze_linear` all linear nodes are. With `freeze_walls` nodes on
-    /// curves and curved surfaces are held; nodes in planes move all the same.
+    /// curves and curved surfaces are held; nodes in planes move all the same. Nodes of periodic patches are held.
     #[must_use]
     pub fn new(
         association: &'a Association,
         straight: &'a [DVec3],
         projected: &'a Projected,
+        ties: &'a Ties,
         linear_nodes: usize,
         freeze_walls: bool,
         freeze_linear: bool,
     ) -> CadConstraint<'a> {
-        CadConstraint { association, straight, projected, linear_nodes, freeze_walls, freeze_linear }
+        CadConstraint { association, straight, projected, ties, linear_nodes, freeze_walls, freeze_linear }
     }
 
     fn foot(&self, host: Host, x: DVec3) -> Option<Foot> {
@@ -246,6 +249,9 @@ impl Constraint for CadConstraint<'_> {
     fn freedom(&self, node: NodeId, at: DVec3) -> Freedom {
         let host = self.projected.hosts[node.index()];
         if node.index() < self.linear_nodes && (self.freeze_linear || host != Host::Free) {
+            return Freedom::Fixed;
+        }
+        if self.ties.holds(node) {
             return Freedom::Fixed;
         }
         if host == Host::Free {

@@ -10,6 +10,7 @@ use crate::associate::{Association, Boundary, Host};
 use crate::certify::{self, Buffer, Certificate, Elements, MeshElements};
 use crate::element::{Cell, Order};
 use crate::mesh::Mesh;
+use crate::periodic::Ties;
 
 /// A share of the displacement below this counts as none.
 const LEAST_SHARE: f64 = 0.125;
@@ -33,6 +34,7 @@ pub fn retreat(
     linear_nodes: usize,
     boundary: &Boundary,
     association: &Association,
+    ties: &Ties,
     certificate: Certificate,
 ) -> (Vec<GivenUp>, Certificate) {
     if certificate.holds() {
@@ -43,12 +45,13 @@ pub fn retreat(
     let mut shares = vec![1.0; curved.len()];
     let mut failing: Vec<usize> = certificate.failures.iter().map(|judged| judged.element).collect();
     for _ in 0..MOST_ROUNDS {
-        let touched = take_back(mesh, &failing, &mut shares);
+        let touched = take_back(mesh, ties, &failing, &mut shares);
         for (n, &share) in shares.iter().enumerate() {
             if share < 1.0 {
                 mesh.points[n] = straight[n] + (curved[n] - straight[n]) * share;
             }
         }
+        ties.apply(&mut mesh.points);
         let subset = Subset { whole: MeshElements::new(mesh, Some(&straight[..linear_nodes])), elements: &touched };
         let outcome = certify::certify(&subset, &settings);
         failing = outcome.failures.iter().map(|judged| touched[judged.element]).collect();
@@ -61,7 +64,7 @@ pub fn retreat(
 }
 
 /// Halves the shares around failing elements; returns all elements that have a node with a changed share.
-fn take_back(mesh: &Mesh, failing: &[usize], shares: &mut [f64]) -> Vec<usize> {
+fn take_back(mesh: &Mesh, ties: &Ties, failing: &[usize], shares: &mut [f64]) -> Vec<usize> {
     let mut changed = vec![false; shares.len()];
     let elements: Vec<&[crate::mesh::NodeId]> =
         mesh.blocks_of(3).flat_map(|(_, block)| block.elements(mesh.order)).collect();
@@ -69,6 +72,7 @@ fn take_back(mesh: &Mesh, failing: &[usize], shares: &mut [f64]) -> Vec<usize> {
     let near = |changed: &[bool], e: usize| elements[e].iter().any(|n| changed[n.index()]);
     let ring: Vec<usize> = (0..elements.len()).filter(|&e| near(&changed, e)).collect();
     ring.iter().flat_map(|&e| elements[e]).for_each(|n| changed[n.index()] = true);
+    ties.spread(&mut changed);
     for (share, _) in shares.iter_mut().zip(&changed).filter(|(_, changed)| **changed) {
         *share = if *share <= LEAST_SHARE { 0.0 } else { 0.5 * *share };
     }
@@ -76,7 +80,7 @@ fn take_back(mesh: &Mesh, failing: &[usize], shares: &mut [f64]) -> Vec<usize> {
 }
 
 /// The faces tied to the CAD that have a node with less than its whole displacement.
-fn given_up(mesh: &Mesh, boundary: &Boundary, association: &Association, shares: &[f64]) -> Vec<GivenUp> {
+pub(crate) fn given_up(mesh: &Mesh, boundary: &Boundary, association: &Association, shares: &[f64]) -> Vec<GivenUp> {
     let mut faces = Vec::new();
     for (face, own) in boundary.faces.iter().enumerate() {
         let block = &mesh.blocks[own.block];

@@ -137,8 +137,8 @@ fn output_that_cannot_be_written() {
         assert!(needles.iter().all(|needle| told.contains(needle)), "{needles:?} are not in: {told}");
         assert_eq!(names_in(&out), [""; 0], "{told}");
     };
-    tried(&out.join("curved.cgns"), &[], &["curved.cgns", ".msh or .vtu"]);
-    tried(&out.join("curved"), &[], &["curved", ".msh or .vtu"]);
+    tried(&out.join("curved.stl"), &[], &["curved.stl", ".msh, .cgns or .vtu"]);
+    tried(&out.join("curved"), &[], &["curved", ".msh, .cgns or .vtu"]);
     tried(&out.join("none/curved.msh"), &[], &["none/curved.msh", "No such file"]);
     tried(&out.join("curved.msh"), &["--report", &report.display().to_string()], &["none/report.json", "No such file"]);
 }
@@ -254,11 +254,27 @@ fn tags_that_do_not_hold() {
             };
         }
     });
-    place.refuses(Input::mesh(swapped), &["swapped.msh", "surface ", "node "]);
     let strange = place.mesh("strange.msh", |mesh| {
         mesh.blocks.iter_mut().filter(|block| block.entity.dimension == 2).for_each(|b| b.entity.tag += 100);
     });
-    place.refuses(Input::mesh(strange), &["strange.msh", "cylinder_bl.step", "nothing of the mesh is tied"]);
+    // The association is found by geometry then, all of it, and the report says so.
+    for (mesh, patch) in [(swapped, "farfield surface 2 "), (strange, "surface 105 ")] {
+        let arguments = Input::mesh(&mesh).with(&["--dry-run"]).arguments(&place.output());
+        let told = sagitta(arguments).expect(0).stdout;
+        assert!(told.starts_with("association by geometry"), "{told}");
+        let of_patch = told.lines().find(|line| line.starts_with(patch)).unwrap_or_else(|| panic!("{told}"));
+        assert!(of_patch.ends_with("  face:5 (45)"), "{told}");
+        let outcome = sagitta(Input::mesh(&mesh).with(&["--max-sweeps", "5"]).arguments(&place.output()));
+        let note = "found by geometry, 0 faces and 0 edges undecided";
+        assert!(outcome.stdout.contains(note), "{:?} {}{}", outcome.code, outcome.stdout, outcome.stderr);
+        std::fs::remove_file(place.output()).unwrap();
+    }
+    // Where geometry does not tell either, what is wrong with the tags is told.
+    let lost = place.mesh("lost.msh", |mesh| {
+        mesh.blocks.iter_mut().filter(|block| block.entity.dimension == 2).for_each(|b| b.entity.tag += 100);
+        mesh.points.iter_mut().for_each(|x| *x += glam::DVec3::splat(0.05));
+    });
+    place.refuses(Input::mesh(lost), &["lost.msh", "cylinder_bl.step", "nothing of the mesh is tied"]);
 }
 
 #[test]

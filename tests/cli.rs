@@ -15,16 +15,20 @@ use serde_json::Value;
 
 #[test]
 fn help_of_every_command_has_the_examples() {
-    for command in [&["--help"][..], &["curve", "--help"], &["check", "--help"], &["info", "--help"]] {
-        let help = sagitta(command).expect(0);
+    let commands =
+        [&[][..], &["curve"], &["check"], &["link"], &["validate"], &["explain"], &["info"], &["groups"], &["project"]];
+    for command in commands {
+        let help = sagitta([command, &["--help"]].concat()).expect(0);
         assert_eq!(help.stderr, "");
-        assert!(examples(&help.stdout).len() >= 4, "{command:?}: {}", help.stdout);
+        assert!(examples(&help.stdout).len() >= 7, "{command:?}: {}", help.stdout);
         assert!(help.stdout.contains("Exit codes:"), "{command:?}: {}", help.stdout);
     }
     let version = sagitta(["--version"]).expect(0);
     assert_eq!(version.stdout.trim(), format!("sagitta {}", env!("CARGO_PKG_VERSION")));
-    for wrong in [&[][..], &["nonsense"], &["curve"], &["check"], &["info"]] {
-        let told = sagitta(wrong).expect(2);
+    // `explain` alone lists all codes.
+    let without_arguments = commands.iter().filter(|command| command != &&["explain"]);
+    for wrong in [&["nonsense"][..]].iter().chain(without_arguments) {
+        let told = sagitta(*wrong).expect(2);
         assert!(told.stdout.is_empty() && told.stderr.contains("Usage: sagitta"), "{wrong:?}: {}", told.stderr);
     }
 }
@@ -52,7 +56,8 @@ fn run(commands: &[String], dir: &Path) {
     for command in commands {
         let command = command.split('#').next().unwrap();
         let place = |word: &str| -> OsString {
-            let made = [".msh", ".vtu", ".json"].iter().any(|end| word.ends_with(end)) && !root().join(word).exists();
+            let made = [".msh", ".cgns", ".vtu", ".json", ".csv", ".xml"].iter().any(|end| word.ends_with(end))
+                && !root().join(word).exists();
             if made { dir.join(Path::new(word).file_name().unwrap()).into() } else { word.into() }
         };
         let arguments: Vec<OsString> = command.split_whitespace().map(place).collect();
@@ -70,7 +75,11 @@ fn examples_of_the_help_run() {
     let help = sagitta(["--help"]).expect(0).stdout;
     let commands = examples(&help);
     let starts = commands.iter().map(|command| command.split(' ').next().unwrap()).collect::<Vec<_>>();
-    assert_eq!(starts, ["curve", "curve", "check", "info"], "{help}");
+    assert_eq!(
+        starts,
+        ["curve", "curve", "check", "link", "validate", "explain", "info", "groups", "project", "convert"],
+        "{help}"
+    );
     run(&commands, tempfile::tempdir().unwrap().path());
 }
 

@@ -17,7 +17,8 @@ const ENCODINGS: [Encoding; 2] = [Encoding::Binary, Encoding::Ascii];
 fn samples() -> Vec<PathBuf> {
     let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/samples");
     let mut files: Vec<PathBuf> = std::fs::read_dir(dir).unwrap().map(|entry| entry.unwrap().path()).collect();
-    files.retain(|file| file.extension().is_some_and(|e| e == "msh"));
+    // Version 4.0 is only there to be refused.
+    files.retain(|file| file.extension().is_some_and(|e| e == "msh") && !file.to_string_lossy().contains("msh40"));
     files.sort();
     assert!(files.len() >= 15);
     files
@@ -279,7 +280,7 @@ fn what_is_no_mesh_file_is_told() {
     };
     assert!(refused("empty.msh", b"").contains("the file is empty"));
     assert!(refused("part.msh", b"ISO-10303-21;\nHEADER;").contains("CAD, not a mesh"));
-    assert!(refused("grid.msh", b"\x89HDF\r\n\x1a\n\0\0").contains("HDF5"));
+    assert!(refused("grid.xml", b"<grid/>").contains("an XML file, but no VTU mesh"));
     assert!(refused("noise.msh", &[0xff; 100]).contains("not a mesh file of a known format"));
     assert!(
         refused("old.msh", b"$MeshFormat\n4 0 8\n$EndMeshFormat\n")
@@ -300,8 +301,8 @@ fn what_cannot_be_written_is_told_and_leaves_no_file() {
         told
     };
     let plain = WriteOptions::default();
-    assert!(refused("mesh.stl", &plain).contains("name it .msh or .vtu"));
-    assert!(refused("mesh", &plain).contains("name it .msh or .vtu"));
+    assert!(refused("mesh.stl", &plain).contains("name it .msh, .cgns or .vtu"));
+    assert!(refused("mesh", &plain).contains("name it .msh, .cgns or .vtu"));
     assert!(refused("none/mesh.msh", &plain).contains("cannot create: No such file"));
     let short = Field { name: "short".into(), support: Support::Elements, values: Values::Integer(vec![1, 2]) };
     let options = WriteOptions { fields: &[short], ..plain };

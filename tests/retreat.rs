@@ -9,6 +9,7 @@ use sagitta::certify::{self, Settings};
 use sagitta::element::Order;
 use sagitta::elevate::elevate;
 use sagitta::formats;
+use sagitta::periodic::Ties;
 use sagitta::retreat::retreat;
 
 #[test]
@@ -27,7 +28,8 @@ fn displacements_are_taken_back_until_every_element_is_valid() {
 
     let first = certify::mesh(&mesh, Some(&straight[..linear_nodes]), &Settings::default());
     assert!(!first.holds(), "the case must be broken to begin with");
-    let (given_up, certificate) = retreat(&mut mesh, &straight, linear_nodes, &boundary, &association, first);
+    let (given_up, certificate) =
+        retreat(&mut mesh, &straight, linear_nodes, &boundary, &association, &Ties::default(), first);
 
     assert!(certificate.holds());
     assert!(certify::mesh(&mesh, None, &Settings::default()).holds(), "the mesh that is handed back is the valid one");
@@ -45,7 +47,37 @@ fn a_valid_mesh_is_left_alone() {
     let mut mesh = elevated.mesh;
     let certificate = certify::mesh(&mesh, None, &Settings::default());
     let boundary = Boundary::new(&linear);
-    let (given_up, _) =
-        retreat(&mut mesh, &straight, elevated.linear_nodes, &boundary, &Association::default(), certificate);
+    let (given_up, _) = retreat(
+        &mut mesh,
+        &straight,
+        elevated.linear_nodes,
+        &boundary,
+        &Association::default(),
+        &Ties::default(),
+        certificate,
+    );
     assert!(given_up.is_empty() && mesh.points == straight);
+}
+
+#[test]
+fn both_sides_of_a_periodic_pair_retreat_alike() {
+    let linear = formats::read(Path::new("fixtures/periodic/sector.msh")).unwrap();
+    let boundary = Boundary::new(&linear);
+    let association = Association { faces: vec![Host::Surface(0); boundary.faces.len()], ..Association::default() };
+    let mut elevated = elevate(&linear, Order::new(2).unwrap()).unwrap();
+    let (ties, notes) = Ties::new(&mut elevated, &boundary, false);
+    assert!(notes.is_empty(), "{notes:?}");
+    ties.apply(&mut elevated.mesh.points);
+    let (straight, linear_nodes) = (elevated.mesh.points.clone(), elevated.linear_nodes);
+    let mut mesh = elevated.mesh;
+    // A new node of the side that leads, pushed far into the volume, and its image with it.
+    let &(_, master) = mesh.periodic.iter().flat_map(|p| &p.pairs).find(|(_, m)| m.index() >= linear_nodes).unwrap();
+    mesh.points[master.index()] += DVec3::splat(0.4);
+    ties.apply(&mut mesh.points);
+    let first = certify::mesh(&mesh, Some(&straight[..linear_nodes]), &Settings::default());
+    assert!(!first.holds(), "the case must be broken to begin with");
+    let (_, certificate) = retreat(&mut mesh, &straight, linear_nodes, &boundary, &association, &ties, first);
+    assert!(certificate.holds());
+    assert!(mesh.points[master.index()] != straight[master.index()] + DVec3::splat(0.4));
+    assert!(ties.farthest(&mesh.points) < 1e-14, "{:e}", ties.farthest(&mesh.points));
 }

@@ -3,10 +3,10 @@
 use crate::boxes::Aabb;
 use crate::chart::{Chart, Rect};
 use crate::curve::Curve;
-use crate::ids::{EdgeId, FaceId, VertexId};
+use crate::ids::{EdgeId, EntityId, FaceId, VertexId};
 use crate::leaf::{EdgeGeometry, FaceGeometry, Side, edge_leaves, face_leaves};
 use crate::model::{Edge, Face, Geometry, Kind, Label, Model, NamedGroup, Vertex};
-use crate::payload::Description;
+use crate::payload::{Description, RawLabel};
 use crate::trim::{Trim, Wire};
 use glam::DVec3;
 use opencascade_sys as sys;
@@ -126,7 +126,7 @@ fn open_edge(shape: &sys::Shape, i: usize) -> Result<(Edge, Option<EdgeGeometry>
     let handle = Arc::new(at("edge", i, shape.curve(i))?);
     edge.kind = kind_of(at("edge", i, handle.form())?.kind);
     let curve = at("edge", i, Curve::new(Arc::clone(&handle), range[0], range[1]))?;
-    Ok((edge, Some(EdgeGeometry { handle, curve, range, leaves: Vec::new() })))
+    Ok((edge, Some(EdgeGeometry { handle, curve, range, tolerance: data.tolerance, leaves: Vec::new() })))
 }
 
 /// Builds the model from a shape and what the child told about it.
@@ -157,7 +157,7 @@ pub(crate) fn model(path: &Path, shape: &sys::Shape, description: Description) -
         faces: surfaces,
         ends: edges.iter().map(|edge| edge.ends).collect(),
         edges: curves,
-        vertices: vertices.iter().map(|vertex| vertex.point).collect(),
+        vertices: vertices.iter().map(|vertex| (vertex.point, vertex.tolerance)).collect(),
     };
     let mut model = Model {
         path: path.to_path_buf(),
@@ -215,28 +215,37 @@ fn link(faces: &mut [Face], surfaces: &[FaceGeometry], edges: &mut [Edge], verti
 
 /// Names, references, groups, what was dropped.
 fn describe(model: &mut Model, description: Description) {
-    let mut named: BTreeMap<String, Vec<FaceId>> = BTreeMap::new();
-    let mut groups: BTreeMap<(String, String), Vec<FaceId>> = BTreeMap::new();
+    let mut named: [BTreeMap<String, Vec<EntityId>>; 2] = Default::default();
+    let mut groups: BTreeMap<(String, String), Vec<EntityId>> = BTreeMap::new();
     for label in description.labels {
         let index = label.index as usize;
         let own = Label { name: label.name.clone(), reference: label.reference.clone() };
         match label.kind {
-            0 => {
-                named.entry(label.name).or_default().push(FaceId::new(index));
+            RawLabel::FACE => {
+                named[0].entry(label.name).or_default().push(FaceId::new(index).into());
                 set(&mut model.faces, index, |face| face.label = own);
             }
-            1 => set(&mut model.edges, index, |edge| edge.label = own),
-            2 => set(&mut model.vertices, index, |vertex| vertex.label = own),
-            _ => groups.entry((label.reference, label.name)).or_default().push(FaceId::new(index)),
+            RawLabel::EDGE => {
+                named[1].entry(label.name).or_default().push(EdgeId::new(index).into());
+                set(&mut model.edges, index, |edge| edge.label = own);
+            }
+            RawLabel::VERTEX => set(&mut model.vertices, index, |vertex| vertex.label = own),
+            kind => {
+                let member =
+                    if kind == RawLabel::FACE_OF_GROUP { FaceId::new(index).into() } else { EdgeId::new(index).into() };
+                groups.entry((label.reference, label.name)).or_default().push(member);
+            }
         }
     }
-    let ready = groups.into_iter().map(|((reference, name), faces)| NamedGroup { name, reference, faces });
-    let shared = named.into_iter().filter(|(name, faces)| !name.is_empty() && faces.len() > 1);
-    let shared = shared.map(|(name, faces)| NamedGroup { name, reference: String::new(), faces });
+    let ready = groups.into_iter().map(|((reference, name), members)| NamedGroup { name, reference, members });
+    let [faces, mut edges] = named;
+    edges.retain(|name, _| !faces.contains_key(name));
+    let shared = faces.into_iter().chain(edges).filter(|(name, members)| !name.is_empty() && members.len() > 1);
+    let shared = shared.map(|(name, members)| NamedGroup { name, reference: String::new(), members });
     model.groups = ready.chain(shared).collect();
     for group in &mut model.groups {
-        group.faces.sort_unstable();
-        group.faces.dedup();
+        group.members.sort_unstable();
+        group.members.dedup();
     }
     model.dropped = description.dropped;
     model.warnings = description.warnings;

@@ -5,10 +5,14 @@
 
 use crate::bezier::{Knots, patch_d2, project, quotient, restrict};
 use crate::curve::{Curve, Hull, axes, homogeneous, knots_within, ranges, shift_into};
+use crate::tolerance::BOUND_SAFETY;
 use glam::{DVec3, DVec4};
 use opencascade_sys as sys;
 use std::f64::consts::{FRAC_PI_4, TAU};
 use std::sync::Arc;
+
+/// Share of a range within which its border is near.
+const HAIR: f64 = 1e-9;
 
 /// Handle of one of OCCT's surfaces, shared by threads.
 pub(crate) type SurfaceHandle = Arc<sys::UniquePtr<sys::Surface>>;
@@ -217,10 +221,25 @@ impl Chart {
 
     /// [`Chart::d2`] by the span that holds `rect`, so that derivatives at a knot are those of the side of `rect`.
     pub(crate) fn d2_within(&self, rect: &Rect, [u, v]: [f64; 2]) -> Jet {
-        let Self::Net(net) = self else { return self.d2(u, v) };
+        let net = match self {
+            Self::Net(net) => net,
+            Self::Offset { .. } => return self.d2_inside(rect, [u, v]),
+            _ => return self.d2(u, v),
+        };
         let center = rect.center();
         let [su, sv] = net.shift(center[0], center[1]);
         net.d2_in(net.span(center[0] - su, center[1] - sv), u - su, v - sv)
+    }
+
+    /// [`Chart::d2`] where OCCT evaluates and second derivatives jump at the borders of `rect` (as those of the offset of a spline do at knots):
+    /// from a point inside by a hair, led on by Taylor's formula.
+    fn d2_inside(&self, rect: &Rect, [u, v]: [f64; 2]) -> Jet {
+        let inside = |t: f64, [a, b]: [f64; 2]| t.clamp(a + HAIR * (b - a), b - HAIR * (b - a));
+        let (p, q) = (inside(u, rect.u), inside(v, rect.v));
+        let (du, dv) = (u - p, v - q);
+        let [s, su, sv, suu, suv, svv] = self.d2(p, q);
+        let at = s + du * su + dv * sv + 0.5 * du * du * suu + du * dv * suv + 0.5 * dv * dv * svv;
+        [at, su + du * suu + dv * suv, sv + du * suv + dv * svv, suu, suv, svv]
     }
 
     /// Cuts `rect` into parts in each of which the surface is smooth and [`Chart::hull`] holds.
@@ -267,10 +286,7 @@ impl Chart {
                 Hull { points, ..hull }
             }
             Self::Net(net) => Hull::of(net.hull(rect)),
-            Self::Offset { basis, distance, .. } => {
-                let hull = basis.hull(rect);
-                Hull { pad: hull.pad + distance.abs(), ..hull }
-            }
+            Self::Offset { basis, distance, .. } => offset_hull(basis, *distance, rect),
             Self::Opaque { .. } => sampled_hull(self, rect),
         }
     }
@@ -333,6 +349,42 @@ fn cut_at_axis(axis: &Axis, meridian: &Curve, [a, b]: [f64; 2]) -> Vec<[f64; 2]>
         }
     }
     vec![[a, b]]
+}
+
+/// The hull of the basis `S` under the affine map that comes nearest to `S + distance n`, padded by how far the map is off: sampled at
+/// 4 × 4 points and widened by [`BOUND_SAFETY`], as the derivatives of certificates are. The pad falls with the square of the size.
+fn offset_hull(basis: &Chart, distance: f64, rect: Rect) -> Hull {
+    let mut hull = basis.hull(rect);
+    let at = |a: f64, b: f64| {
+        let jet = basis.d2_within(&rect, rect.at(a, b));
+        Some((jet[0], distance * jet[1].cross(jet[2]).try_normalize()?))
+    };
+    let map = || {
+        let (origin, lift) = at(0.5, 0.5)?;
+        let [(p, lp), (q, lq)] = [at(0.0, 0.5)?, at(1.0, 0.5)?];
+        let [(r, lr), (s, ls)] = [at(0.5, 0.0)?, at(0.5, 1.0)?];
+        let (u, v) = (q - p, s - r);
+        let [e, f, g] = [u.length_squared(), u.dot(v), v.length_squared()];
+        let d = Some(e * g - f * f).filter(|d| *d > 1e-12 * e * g)?.recip();
+        Some(move |x: DVec3| {
+            let (a, b) = ((x - origin).dot(u), (x - origin).dot(v));
+            lift + d * (g * a - f * b) * (lq - lp) + d * (e * b - f * a) * (ls - lr)
+        })
+    };
+    let padded = map().and_then(|map| {
+        let samples = (0..16).map(|k| at(f64::from(k / 4) / 3.0, f64::from(k % 4) / 3.0));
+        let mut off = samples.map(|sample| sample.map(|(x, lift)| lift.distance(map(x))));
+        let off = off.try_fold(0.0, |most: f64, off| Some(most.max(off?)))?;
+        Some((map, BOUND_SAFETY * off)).filter(|(_, pad)| *pad < distance.abs())
+    });
+    match padded {
+        Some((map, pad)) => {
+            hull.points.iter_mut().for_each(|x| *x += map(*x));
+            hull.pad += pad;
+        }
+        None => hull.pad += distance.abs(),
+    }
+    hull
 }
 
 fn sampled_hull(chart: &Chart, rect: Rect) -> Hull {

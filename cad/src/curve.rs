@@ -2,6 +2,7 @@
 
 use crate::bezier::{Bernstein, Knots, project, quotient, restrict};
 use crate::boxes::Aabb;
+use crate::tolerance::BOUND_SAFETY;
 use glam::{DVec3, DVec4};
 use opencascade_sys as sys;
 use std::f64::consts::{FRAC_PI_4, TAU};
@@ -217,16 +218,38 @@ impl Curve {
                 Hull::of(vec![self.d2(t0)[0], tip, self.d2(t1)[0]])
             }
             Self::Spline(spline) => Hull::of(spline.hull(t0, t1)),
-            Self::Offset { basis, distance, .. } => {
-                let hull = basis.hull(t0, t1);
-                Hull { pad: hull.pad + distance.abs(), ..hull }
-            }
+            Self::Offset { basis, distance, .. } => self.offset_hull(basis, *distance, t0, t1),
             Self::Opaque { .. } => {
                 let points: Vec<DVec3> = (0..=8).map(|i| self.d2(t0 + (t1 - t0) * f64::from(i) / 8.0)[0]).collect();
                 let bend = points.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).length()).fold(0.0, f64::max);
                 Hull { points, pad: bend, sound: false }
             }
         }
+    }
+}
+
+impl Curve {
+    /// The hull of the basis under the affine map that comes nearest to the offset, padded by how far the map is off: sampled and widened by
+    /// [`BOUND_SAFETY`], as the derivatives of certificates are.
+    fn offset_hull(&self, basis: &Self, distance: f64, t0: f64, t1: f64) -> Hull {
+        let mut hull = basis.hull(t0, t1);
+        let at = |k: u32| {
+            // inside by a hair: at a knot the neighbouring span would answer
+            let t = t0 + (t1 - t0) * (f64::from(k) / 7.0).clamp(1e-9, 1.0 - 1e-9);
+            let on = basis.d2(t)[0];
+            (on, self.d2(t)[0] - on)
+        };
+        let [(a, first), (b, last)] = [at(0), at(7)];
+        let along = (b - a) / (b - a).length_squared().max(f64::MIN_POSITIVE);
+        let map = |x: DVec3| first + (x - a).dot(along) * (last - first);
+        let off = (1..7).map(at).map(|(on, lift)| lift.distance(map(on))).fold(0.0, f64::max);
+        if BOUND_SAFETY * off < distance.abs() {
+            hull.points.iter_mut().for_each(|x| *x += map(*x));
+            hull.pad += BOUND_SAFETY * off;
+        } else {
+            hull.pad += distance.abs();
+        }
+        hull
     }
 }
 

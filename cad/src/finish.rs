@@ -2,7 +2,7 @@
 
 use crate::chart::{Jet, Rect, surface_d2};
 use crate::curve::curve_d2;
-use crate::foot::{End, Foot, Trace};
+use crate::foot::{Doubt, End, Foot, Trace};
 use crate::group::Member;
 use crate::ids::{EdgeId, EntityId, FaceId, VertexId};
 use crate::leaf::{EdgeGeometry, FaceGeometry, FaceLeaf, Side};
@@ -23,6 +23,32 @@ impl Search<'_> {
     /// The winner, evaluated by OCCT.
     pub(crate) fn finish(self) -> Foot {
         let Some(best) = self.best else { return self.nowhere() };
+        let foot = self.finish_at(best);
+        self.within_tolerance(best, &foot).unwrap_or(foot)
+    }
+
+    /// A nearer minimum on the surface that is outside the trim by no more than the tolerance of the edge or vertex beside it is a point of
+    /// the face: the trim is not known better than that.
+    fn within_tolerance(&self, best: Best, foot: &Foot) -> Option<Foot> {
+        let geometry = &self.group.geometry;
+        let tolerance = match foot.end {
+            End::OnTrim(edge) => geometry.edges[edge.index()].as_ref()?.tolerance,
+            End::OnEnd(vertex) => geometry.vertices[vertex.index()].1,
+            _ => return None,
+        };
+        let nearer = self.outside.iter().filter(|outside| outside.distance < best.distance - self.tie());
+        let within = nearer.filter_map(|outside| {
+            let Member::Face { face, .. } = self.group.members[outside.member] else { return None };
+            let [u, v] = outside.parameters;
+            let point = surface_d2(&geometry.faces[face as usize].handle, u, v)[0];
+            (point.distance(foot.point) <= tolerance).then_some((outside, FaceId::new(face as usize), point))
+        });
+        let (outside, face, point) =
+            within.min_by(|(a, ..), (b, ..)| a.distance.total_cmp(&b.distance).then(a.member.cmp(&b.member)))?;
+        Some(self.foot(best, face.into(), outside.parameters, point, foot.end))
+    }
+
+    fn finish_at(&self, best: Best) -> Foot {
         let geometry = &self.group.geometry;
         match self.group.members[best.member] {
             Member::Face { face, leaf } => {
@@ -31,12 +57,26 @@ impl Search<'_> {
                 let (parameters, jet) =
                     polish_surface(geometry, leaf_geometry, self.x, best.parameters, self.group.diagonal);
                 let end = self.end_on_face(geometry, leaf_geometry, parameters, &jet);
+                // where a surface ends at a knot or seam there is an edge as a rule, as near as the surface
+                let rim = self.rim.filter(|rim| end != End::Interior && rim.distance <= best.distance + self.tie());
+                if let Some(rim) = rim {
+                    return self.finish_at(rim);
+                }
                 let at_trim = matches!(end, End::Stalled { .. }) && leaf_geometry.crossed;
                 let slid = if at_trim { self.slide_to_trim(best, face as usize) } else { None };
-                if let Some(foot) = slid {
-                    return foot;
-                }
-                self.foot(best, FaceId::new(face as usize).into(), parameters, jet[0], end)
+                slid.unwrap_or_else(|| {
+                    let mut foot = self.foot(
+                        Best { parameters, ..best },
+                        FaceId::new(face as usize).into(),
+                        parameters,
+                        jet[0],
+                        end,
+                    );
+                    if end == End::Interior {
+                        foot.trace.response = newton::response(&jet, self.x);
+                    }
+                    foot
+                })
             }
             Member::Edge { edge, owner, .. } => self.finish_edge(best, edge as usize, owner.map(|face| face as usize)),
             Member::Vertex { vertex, owner } => {
@@ -45,14 +85,14 @@ impl Search<'_> {
                     Some(face) => (FaceId::new(face as usize).into(), geometry.corner_parameters(face as usize, id)),
                     None => (id.into(), [0.0; 2]),
                 };
-                self.foot(best, entity, parameters, geometry.vertices[vertex as usize], End::OnEnd(id))
+                self.foot(best, entity, parameters, geometry.vertices[vertex as usize].0, End::OnEnd(id))
             }
         }
     }
 
     fn foot(&self, best: Best, entity: EntityId, parameters: [f64; 2], point: DVec3, end: End) -> Foot {
         let distance = point.distance(self.x);
-        Foot { point, entity, parameters, distance, end, proven: self.proven, trace: self.trace(best.member) }
+        Foot { point, entity, parameters, distance, end, doubt: self.doubt, trace: self.trace(Some(best)) }
     }
 
     fn nowhere(&self) -> Foot {
@@ -64,13 +104,20 @@ impl Search<'_> {
             parameters: [f64::NAN; 2],
             distance: f64::INFINITY,
             end,
-            proven: false,
-            trace: self.trace(usize::MAX),
+            doubt: Some(Doubt::NotSearched),
+            trace: self.trace(None),
         }
     }
 
-    fn trace(&self, member: usize) -> Trace {
-        Trace { group: self.group.number, leaf: member as u32, x: self.x, others: self.others.sqrt() }
+    fn trace(&self, best: Option<Best>) -> Trace {
+        Trace {
+            group: self.group.number,
+            leaf: best.map_or(0, |best| best.member as u32),
+            x: self.x,
+            others: self.others.sqrt(),
+            start: best.map_or([f64::NAN; 2], |best| best.parameters),
+            response: [DVec3::ZERO; 2],
+        }
     }
 
     fn residual_limit(&self, distance: f64) -> f64 {
@@ -113,7 +160,10 @@ impl Search<'_> {
         let (t, jet) = polish_curve(edge, self.x, best.parameters[0]);
         if let Some(face) = owner {
             let parameters = geometry.faces[face].parameters_on(index, edge.range, t, jet[0]);
-            return self.foot(best, FaceId::new(face).into(), parameters, jet[0], End::OnTrim(id));
+            let corner = geometry.ends[index][usize::from(t >= edge.range[1])];
+            let at_end = t <= edge.range[0] || t >= edge.range[1];
+            let end = corner.filter(|_| at_end).map_or(End::OnTrim(id), End::OnEnd);
+            return self.foot(best, FaceId::new(face).into(), parameters, jet[0], end);
         }
         let r = jet[0] - self.x;
         let residual = tangential(r, jet[1]);
@@ -193,7 +243,7 @@ impl Geometry {
             let end = self.ends[edge].iter().position(|&end| end == Some(vertex))?;
             Some((edge, self.edges[edge].as_ref()?.range, end))
         });
-        let point = self.vertices[vertex.index()];
+        let (point, _) = self.vertices[vertex.index()];
         let parameters = ends.map(|(edge, range, end)| self.faces[face].parameters_on(edge, range, range[end], point));
         parameters.into_iter().find(|p| p[0].is_finite()).unwrap_or([f64::NAN; 2])
     }

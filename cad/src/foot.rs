@@ -17,8 +17,9 @@ pub struct Foot {
     pub distance: f64,
     /// How the search ended.
     pub end: End,
-    /// Whether no other point of the group can be nearer (by more than rounding): every leaf was either farther away or had one minimum only.
-    pub proven: bool,
+    /// Why another point of the group might be nearer; `None` where the foot is proven to be the closest point (up to rounding): every
+    /// leaf was either farther away or had one minimum only.
+    pub doubt: Option<Doubt>,
     /// For the next query with this foot as a hint.
     pub(crate) trace: Trace,
 }
@@ -34,11 +35,51 @@ pub(crate) struct Trace {
     pub(crate) x: DVec3,
     /// No other leaf of the group is nearer to the query point.
     pub(crate) others: f64,
+    /// Parameters in the leaf.
+    pub(crate) start: [f64; 2],
+    /// How the parameters follow a small move of the query point: their gradients; zero where not known.
+    pub(crate) response: [DVec3; 2],
+}
+
+impl Trace {
+    /// Where Newton's method leads from the old foot for a new query point, at no evaluation.
+    pub(crate) fn follow(&self, x: DVec3) -> [f64; 2] {
+        let by = x - self.x;
+        [0, 1].map(|i| self.start[i] + self.response[i].dot(by))
+    }
 }
 
 impl PartialEq for Trace {
     fn eq(&self, _: &Self) -> bool {
         true
+    }
+}
+
+impl Foot {
+    /// Whether the foot is proven to be the closest point of the group.
+    pub fn is_proven(&self) -> bool {
+        self.doubt.is_none()
+    }
+}
+
+/// Why a foot is not proven to be the closest point; of several reasons, the last of these.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Doubt {
+    /// A surface or curve near by is of a kind whose hulls are sampled.
+    SampledHull,
+    /// The search spent [`CUT_BUDGET`](crate::tolerance::CUT_BUDGET) before it had cut all that may be nearer.
+    Budget,
+    /// The search was made without proof, or the query point is not finite.
+    NotSearched,
+}
+
+impl std::fmt::Display for Doubt {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::SampledHull => "the hull of a surface or curve near by is sampled",
+            Self::Budget => "too many parts are as near",
+            Self::NotSearched => "not searched",
+        })
     }
 }
 

@@ -1,4 +1,4 @@
-//! CAD groups: sets of faces, of edges or of vertices, with a tree of samples and a tree of hull boxes each.
+//! CAD groups: sets of faces, edges and vertices, with a tree of samples and a tree of hull boxes each.
 
 use crate::boxes::{Aabb, BoxTree};
 use crate::chart::surface_d2;
@@ -9,6 +9,7 @@ use crate::model::{Geometry, Model};
 use glam::DVec3;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use thiserror::Error;
@@ -48,20 +49,20 @@ pub(crate) enum Member {
         face: u32,
         leaf: u32,
     },
-    /// `owner` is a face of the group that the edge bounds; `None` in groups of edges.
+    /// `owner` is a face of the group that the edge bounds, if there is one.
     Edge {
         edge: u32,
         leaf: u32,
         owner: Option<u32>,
     },
-    /// `owner` is a face of the group that the vertex is a corner of; `None` in groups of vertices.
+    /// `owner` is a face of the group that the vertex is a corner of, if there is one.
     Vertex {
         vertex: u32,
         owner: Option<u32>,
     },
 }
 
-/// A set of faces, of edges, or of vertices: the unit of projection. All queries may be made from many threads at once.
+/// A set of faces, edges and vertices: the unit of projection. All queries may be made from many threads at once.
 pub struct Group {
     /// Tells feet of this group from those of others.
     pub(crate) number: u32,
@@ -87,32 +88,7 @@ impl Group {
     /// # Errors
     /// [`GroupError`]: no ids, ids that the model lacks, nothing to project on.
     pub fn of_faces(model: &Model, ids: &[FaceId]) -> Result<Self, GroupError> {
-        let count = model.faces().len();
-        let ids = sorted(ids, |id| id.index() < count, count)?;
-        let geometry = model.geometry();
-        let mut members = Vec::new();
-        for id in &ids {
-            let leaves = geometry.faces[id.index()].leaves.len() as u32;
-            members.extend((0..leaves).map(|leaf| Member::Face { face: id.index() as u32, leaf }));
-        }
-        let mut seen = std::collections::BTreeSet::new();
-        for id in &ids {
-            for edge in geometry.faces[id.index()].sides.iter().filter_map(|side| side.edge) {
-                let Some(curve) = geometry.edges[edge].as_ref().filter(|_| seen.insert(edge)) else { continue };
-                let owner = Some(id.index() as u32);
-                let leaves = curve.leaves.len() as u32;
-                members.extend((0..leaves).map(|leaf| Member::Edge { edge: edge as u32, leaf, owner }));
-            }
-        }
-        let mut corners = std::collections::BTreeSet::new();
-        for id in &ids {
-            let edges = geometry.faces[id.index()].sides.iter().filter_map(|side| side.edge);
-            for vertex in edges.filter(|&edge| geometry.edges[edge].is_some()).flat_map(|edge| geometry.ends[edge]) {
-                let Some(vertex) = vertex.filter(|vertex| corners.insert(vertex.index())) else { continue };
-                members.push(Member::Vertex { vertex: vertex.index() as u32, owner: Some(id.index() as u32) });
-            }
-        }
-        Self::new(model, ids.into_iter().map(EntityId::Face).collect(), members)
+        Self::of(model, &ids.iter().map(|&id| id.into()).collect::<Vec<_>>())
     }
 
     /// Group of edges; degenerate ones (poles) have no curve and count only if a real one is there too.
@@ -120,18 +96,7 @@ impl Group {
     /// # Errors
     /// [`GroupError`]: no ids, ids that the model lacks, degenerate edges only.
     pub fn of_edges(model: &Model, ids: &[EdgeId]) -> Result<Self, GroupError> {
-        let count = model.edges().len();
-        let ids = sorted(ids, |id| id.index() < count, count)?;
-        let mut members = Vec::new();
-        for id in &ids {
-            let Some(curve) = &model.geometry().edges[id.index()] else { continue };
-            let leaves = curve.leaves.len() as u32;
-            members.extend((0..leaves).map(|leaf| Member::Edge { edge: id.index() as u32, leaf, owner: None }));
-        }
-        if members.is_empty() {
-            return Err(GroupError::Degenerate { entity: ids[0].into() });
-        }
-        Self::new(model, ids.into_iter().map(EntityId::Edge).collect(), members)
+        Self::of(model, &ids.iter().map(|&id| id.into()).collect::<Vec<_>>())
     }
 
     /// Group of vertices.
@@ -139,10 +104,47 @@ impl Group {
     /// # Errors
     /// [`GroupError`]: no ids, ids that the model lacks.
     pub fn of_vertices(model: &Model, ids: &[VertexId]) -> Result<Self, GroupError> {
-        let count = model.vertices().len();
-        let ids = sorted(ids, |id| id.index() < count, count)?;
-        let members = ids.iter().map(|id| Member::Vertex { vertex: id.index() as u32, owner: None }).collect();
-        Self::new(model, ids.into_iter().map(EntityId::Vertex).collect(), members)
+        Self::of(model, &ids.iter().map(|&id| id.into()).collect::<Vec<_>>())
+    }
+
+    /// Group of any entities, as [`Group::of_faces`], [`Group::of_edges`] and [`Group::of_vertices`] take them. A foot on an edge or a vertex
+    /// that bounds a face of the group is told as a foot of that face.
+    ///
+    /// # Errors
+    /// [`GroupError`]: no ids, ids that the model lacks, nothing to project on.
+    pub fn of(model: &Model, ids: &[EntityId]) -> Result<Self, GroupError> {
+        let ids = sorted(model, ids)?;
+        let geometry = model.geometry();
+        let (mut members, mut seen) = (Vec::new(), BTreeSet::new());
+        let faces = || ids.iter().filter_map(|id| if let EntityId::Face(id) = id { Some(id.index()) } else { None });
+        for face in faces() {
+            let leaves = geometry.faces[face].leaves.len() as u32;
+            members.extend((0..leaves).map(|leaf| Member::Face { face: face as u32, leaf }));
+        }
+        let sides = |face: usize| geometry.faces[face].sides.iter().filter_map(|side| side.edge);
+        for face in faces() {
+            for edge in sides(face) {
+                add_edge(geometry, EdgeId::new(edge), Some(face as u32), &mut seen, &mut members);
+            }
+        }
+        for face in faces() {
+            for edge in sides(face).filter(|&edge| geometry.edges[edge].is_some()) {
+                for vertex in geometry.ends[edge].into_iter().flatten() {
+                    add_vertex(vertex, Some(face as u32), &mut seen, &mut members);
+                }
+            }
+        }
+        for &id in &ids {
+            match id {
+                EntityId::Face(_) => {}
+                EntityId::Edge(edge) => add_edge(geometry, edge, None, &mut seen, &mut members),
+                EntityId::Vertex(vertex) => add_vertex(vertex, None, &mut seen, &mut members),
+            }
+        }
+        match (members.is_empty(), ids.iter().find(|id| matches!(id, EntityId::Edge(_)))) {
+            (true, Some(&entity)) => Err(GroupError::Degenerate { entity }),
+            _ => Self::new(model, ids, members),
+        }
     }
 
     fn new(model: &Model, entities: Vec<EntityId>, members: Vec<Member>) -> Result<Self, GroupError> {
@@ -193,18 +195,47 @@ impl Group {
     pub fn evaluate(&self, entity: EntityId, parameters: [f64; 2]) -> Option<Evaluation> {
         self.geometry.evaluate(entity, parameters)
     }
+
+    /// [`Group::evaluate`] for many parameters at once, on all threads of the current rayon pool.
+    pub fn evaluate_batch(&self, at: &[(EntityId, [f64; 2])]) -> Vec<Option<Evaluation>> {
+        at.par_iter().map(|&(entity, parameters)| self.geometry.evaluate(entity, parameters)).collect()
+    }
 }
 
-fn sorted<I: Copy + Ord + Into<EntityId>>(
-    ids: &[I],
-    known: impl Fn(I) -> bool,
-    count: usize,
-) -> Result<Vec<I>, GroupError> {
+/// The leaves of an edge, once; degenerate edges have none.
+fn add_edge(
+    geometry: &Geometry,
+    edge: EdgeId,
+    owner: Option<u32>,
+    seen: &mut BTreeSet<EntityId>,
+    members: &mut Vec<Member>,
+) {
+    if let Some(curve) = geometry.edges[edge.index()].as_ref().filter(|_| seen.insert(edge.into())) {
+        let leaves = curve.leaves.len() as u32;
+        members.extend((0..leaves).map(|leaf| Member::Edge { edge: edge.index() as u32, leaf, owner }));
+    }
+}
+
+fn add_vertex(vertex: VertexId, owner: Option<u32>, seen: &mut BTreeSet<EntityId>, members: &mut Vec<Member>) {
+    if seen.insert(vertex.into()) {
+        members.push(Member::Vertex { vertex: vertex.index() as u32, owner });
+    }
+}
+
+fn sorted(model: &Model, ids: &[EntityId]) -> Result<Vec<EntityId>, GroupError> {
     let mut ids = ids.to_vec();
     ids.sort_unstable();
     ids.dedup();
-    match ids.iter().find(|&&id| !known(id)) {
-        Some(&id) => Err(GroupError::Unknown { entity: id.into(), count }),
+    let unknown = ids.iter().find(|&&id| model.label(id).is_none());
+    match unknown {
+        Some(&entity) => {
+            let count = match entity {
+                EntityId::Face(_) => model.faces().len(),
+                EntityId::Edge(_) => model.edges().len(),
+                EntityId::Vertex(_) => model.vertices().len(),
+            };
+            Err(GroupError::Unknown { entity, count })
+        }
         None if ids.is_empty() => Err(GroupError::Empty),
         None => Ok(ids),
     }
@@ -217,7 +248,7 @@ impl Geometry {
             Member::Edge { edge, leaf, .. } => {
                 self.edges[edge as usize].as_ref().map_or(Aabb::EMPTY, |e| e.leaves[leaf as usize].bounds)
             }
-            Member::Vertex { vertex, .. } => Aabb::of_points([self.vertices[vertex as usize]]),
+            Member::Vertex { vertex, .. } => Aabb::of_points([self.vertices[vertex as usize].0]),
         }
     }
 
@@ -232,7 +263,7 @@ impl Geometry {
                 let [a, b] = e.leaves[leaf as usize].range;
                 e.curve.d2(0.5 * (a + b))[0]
             }),
-            Member::Vertex { vertex, .. } => self.vertices[vertex as usize],
+            Member::Vertex { vertex, .. } => self.vertices[vertex as usize].0,
         }
     }
 
@@ -245,7 +276,7 @@ impl Geometry {
             EntityId::Edge(id) => {
                 Evaluation::Curve(CurvePoint::new(curve_d2(&self.edges.get(id.index())?.as_ref()?.handle, u)))
             }
-            EntityId::Vertex(id) => Evaluation::Vertex(*self.vertices.get(id.index())?),
+            EntityId::Vertex(id) => Evaluation::Vertex(self.vertices.get(id.index())?.0),
         };
         evaluation.point().is_finite().then_some(evaluation)
     }

@@ -1,15 +1,15 @@
 //! Reading a CAD file: in a child process, because malformed files make OCCT crash or hang.
 
 use crate::assemble;
+use crate::child::{self, ChildError, Limits, Outcome};
 use crate::model::{Model, SourceFormat};
 use crate::payload::{self, Answer};
-use crate::reader::{MEMORY_VARIABLE, READER_SUBCOMMAND, SCALE_VARIABLE, WARNING_PREFIX};
+use crate::reader::{READER_SUBCOMMAND, SCALE_VARIABLE};
 use opencascade_sys as sys;
-use std::io::{self, Read};
+use std::io;
 use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus, Stdio};
-use std::sync::mpsc;
+use std::process::ExitStatus;
 use std::time::Duration;
 use thiserror::Error;
 
@@ -164,60 +164,14 @@ fn is_memory(cause: &str) -> bool {
     cause.contains("bad_alloc") || cause.contains("Standard_OutOfMemory")
 }
 
-/// What came of the child.
-struct Outcome {
-    bytes: Vec<u8>,
-    status: ExitStatus,
-    warnings: Vec<String>,
-}
-
-/// Bytes of the child's standard error that are looked at.
-const ERRORS: u64 = 1 << 20;
-
 /// Runs the child to its end or the time limit; gives what it wrote.
 fn run(path: &Path, options: &ReadOptions) -> Result<Outcome, ReadError> {
-    let failed = |source| ReadError::Reader { path: path.to_path_buf(), reader: options.reader.clone(), source };
-    let mut child = Command::new(&options.reader)
-        .arg(READER_SUBCOMMAND)
-        .arg(path)
-        .env(MEMORY_VARIABLE, options.memory_limit.to_string())
-        .env(SCALE_VARIABLE, options.scale.to_string())
-        .stdin(Stdio::null())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .map_err(failed)?;
-    let (Some(mut pipe), Some(errors)) = (child.stdout.take(), child.stderr.take()) else {
-        return Err(failed(io::Error::other("it has no standard output")));
-    };
-    let (sender, receiver) = mpsc::channel();
-    let reading = std::thread::spawn(move || {
-        let mut bytes = Vec::new();
-        let result = pipe.read_to_end(&mut bytes).map(|_| bytes);
-        let _ = sender.send(result); // the receiver has gone after a time-out
-    });
-    let listening = std::thread::spawn(move || warnings_in(errors));
-    let Ok(bytes) = receiver.recv_timeout(options.timeout) else {
-        end(&mut child);
-        let _ = reading.join();
-        return Err(ReadError::TimedOut { path: path.to_path_buf(), limit: options.timeout });
-    };
-    let status = child.wait().map_err(failed)?;
-    Ok(Outcome { bytes: bytes.map_err(failed)?, status, warnings: listening.join().unwrap_or_default() })
-}
-
-/// Warnings among the first lines of the child's standard error; the rest is read and dropped, so that the child never waits.
-fn warnings_in(mut errors: impl Read) -> Vec<String> {
-    let mut bytes = Vec::new();
-    let mut head = errors.by_ref().take(ERRORS);
-    let _ = head.read_to_end(&mut bytes); // what was read before an error counts
-    let _ = io::copy(&mut errors, &mut io::sink());
-    let text = String::from_utf8_lossy(&bytes);
-    text.lines().filter_map(|line| line.strip_prefix(WARNING_PREFIX)).map(str::to_owned).collect()
-}
-
-/// Ends the child and collects it; it may have ended by itself meanwhile.
-fn end(child: &mut Child) {
-    let _ = child.kill();
-    let _ = child.wait();
+    let limits = Limits { timeout: options.timeout, memory: options.memory_limit };
+    let scale = (SCALE_VARIABLE, options.scale.to_string());
+    child::run(&options.reader, READER_SUBCOMMAND, path, &[scale], limits).map_err(|error| match error {
+        ChildError::TimedOut => ReadError::TimedOut { path: path.to_path_buf(), limit: options.timeout },
+        ChildError::Run(source) => {
+            ReadError::Reader { path: path.to_path_buf(), reader: options.reader.clone(), source }
+        }
+    })
 }

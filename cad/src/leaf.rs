@@ -58,6 +58,7 @@ pub(crate) struct EdgeGeometry {
     pub(crate) handle: CurveHandle,
     pub(crate) curve: Curve,
     pub(crate) range: [f64; 2],
+    pub(crate) tolerance: f64,
     pub(crate) leaves: Vec<EdgeLeaf>,
 }
 

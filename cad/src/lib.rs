@@ -3,7 +3,7 @@
 //! * [`Model::read`] reads STEP, IGES and BREP in a child process and hands out plain, numbered, named entities
 //!   in the unit of the file. The child is the calling program itself: its `main` must begin with
 //!   `if first argument == READER_SUBCOMMAND { return serve_reader(path) }`.
-//! * [`Group`] is a set of faces, edges or vertices; [`Group::closest`] gives the [`Foot`] of a point on it, trims respected, and says
+//! * [`Group`] is a set of faces, edges and vertices; [`Group::closest`] gives the [`Foot`] of a point on it, trims respected, and says
 //!   whether it is proven to be the closest point; [`Group::closest_batch`] does so for many, in parallel.
 //! * [`Model::evaluate`] gives derivatives, normals and curvatures; [`Model::resolve`] turns references of linkage files into entities.
 //! * [`BoxTree`] is the tree of boxes that the search uses, for other uses too.
@@ -17,6 +17,7 @@ mod bezier;
 mod boxes;
 mod certificate;
 mod chart;
+pub mod child;
 mod closed_form;
 mod curve;
 mod finish;
@@ -37,9 +38,10 @@ mod sewing;
 mod slab;
 pub mod tolerance;
 mod trim;
+mod unit;
 
 pub use boxes::{Aabb, BoxTree, Nearest};
-pub use foot::{CurvePoint, End, Evaluation, Foot, SurfacePoint};
+pub use foot::{CurvePoint, Doubt, End, Evaluation, Foot, SurfacePoint};
 pub use group::{Group, GroupError};
 pub use health::{Health, TrimFault};
 pub use ids::{EdgeId, EntityId, FaceId, VertexId};
@@ -48,3 +50,4 @@ pub use model::{Edge, Face, Kind, Label, Model, NamedGroup, SourceFormat, Unit, 
 pub use reader::{READER_SUBCOMMAND, serve_reader};
 pub use reference::ReferenceError;
 pub use sewing::Sewing;
+pub use unit::unit_factor;

@@ -9,6 +9,9 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
+/// Entities that a message lists.
+const LISTED: usize = 5;
+
 /// What a face or an edge is, as the file says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[allow(missing_docs)] // the names say it
@@ -137,15 +140,15 @@ pub struct Vertex {
     pub tolerance: f64,
 }
 
-/// A set of faces that the file itself names: an IGES 402 group, or faces that share a name.
+/// A set of entities that the file itself names: an IGES 402 group, or faces (else edges) that share a name. `group:NAME` refers to it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NamedGroup {
     /// Its name.
     pub name: String,
-    /// Reference of the group's own entity; empty for faces that share a name.
+    /// Reference of the group's own entity; empty for entities that share a name.
     pub reference: String,
-    /// Its faces, ascending.
-    pub faces: Vec<FaceId>,
+    /// Its faces, and its edges that bound none of them, ascending.
+    pub members: Vec<EntityId>,
 }
 
 /// What queries need, shared by the model and its groups.
@@ -154,7 +157,8 @@ pub(crate) struct Geometry {
     /// `None` for degenerate edges.
     pub(crate) edges: Vec<Option<EdgeGeometry>>,
     pub(crate) ends: Vec<[Option<VertexId>; 2]>,
-    pub(crate) vertices: Vec<DVec3>,
+    /// Places and tolerances.
+    pub(crate) vertices: Vec<(DVec3, f64)>,
 }
 
 /// A CAD file, read. Plain data and immutable geometry: all of it may be used from any thread.
@@ -214,7 +218,7 @@ impl Model {
         &self.vertices
     }
 
-    /// Sets of faces that the file names.
+    /// Sets of entities that the file names.
     pub fn groups(&self) -> &[NamedGroup] {
         &self.groups
     }
@@ -227,6 +231,19 @@ impl Model {
     /// What OCCT's checks say of entities of the file, by reference; the model may be right nevertheless.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
+    }
+
+    /// What a user of the model should know of the reading: entities of the file that came to no shape or that OCCT calls malformed, the first
+    /// by reference. `None` where there are none.
+    pub fn losses(&self) -> Option<String> {
+        let told = |list: &[String], what: &str| {
+            let first = list.iter().take(LISTED).map(String::as_str).collect::<Vec<_>>().join(", ");
+            let more = if list.len() > LISTED { ", ..." } else { "" };
+            (!list.is_empty()).then(|| format!("{} entities of it {what}: {first}{more}", list.len()))
+        };
+        let lost = told(&self.dropped, "were dropped by the reader").into_iter();
+        let told: Vec<String> = lost.chain(told(&self.warnings, "are malformed")).collect();
+        (!told.is_empty()).then(|| format!("{}: {}", self.path.display(), told.join("; ")))
     }
 
     /// Close box of all entities, see [`Face::bounds`].

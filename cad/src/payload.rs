@@ -6,13 +6,21 @@ use std::io::{self, Write};
 
 const MAGIC: &[u8; 8] = b"sagitta1";
 
-/// Name and reference of an entity: kind 0 face, 1 edge, 2 vertex, 3 face as a member of a group.
+/// Name and reference of an entity, or of a group that it is a member of.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct RawLabel {
     pub(crate) kind: u8,
     pub(crate) index: u32,
     pub(crate) reference: String,
     pub(crate) name: String,
+}
+
+/// Kinds of labels, as the shim numbers them.
+impl RawLabel {
+    pub(crate) const FACE: u8 = 0;
+    pub(crate) const EDGE: u8 = 1;
+    pub(crate) const VERTEX: u8 = 2;
+    pub(crate) const FACE_OF_GROUP: u8 = 3;
 }
 
 /// What the file says beside the shape.

@@ -1,62 +1,38 @@
 //! The reading child: the only process in which OCCT parses a file.
 
 use crate::assemble;
+use crate::child;
 use crate::format;
 use crate::group::Group;
 use crate::model::{Model, SourceFormat};
 use crate::payload::{self, Answer, Description, RawLabel};
 use opencascade_sys as sys;
-use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
-use std::fs::File;
-use std::os::fd::OwnedFd;
 use std::path::Path;
 use std::process::ExitCode;
 
 /// First argument with which a program must call [`serve_reader`]; the second is the file.
 pub const READER_SUBCOMMAND: &str = "__read-cad";
 
-/// Variable in which the parent hands the memory limit (bytes) to the child.
-pub(crate) const MEMORY_VARIABLE: &str = "SAGITTA_READER_MEMORY";
-
 /// Variable in which the parent hands [`ReadOptions::scale`](crate::ReadOptions::scale) to the child.
 pub(crate) const SCALE_VARIABLE: &str = "SAGITTA_READER_SCALE";
-
-/// How lines of the child's standard error begin that tell of malformed entities.
-pub(crate) const WARNING_PREFIX: &str = "sagitta-warning ";
 
 /// Body of the hidden subcommand: reads the file with OCCT, rehearses on every entity what the parent will do, and writes the model to
 /// standard output. Nothing else reaches standard output, whatever OCCT prints.
 pub fn serve_reader(path: &Path) -> ExitCode {
-    limit_memory();
-    let Some(out) = take_stdout() else { return ExitCode::FAILURE };
+    child::limit_memory();
+    let Some(out) = child::take_stdout() else { return ExitCode::FAILURE };
     let (answer, shape) = match read(path) {
         Ok((description, shape)) => (Answer::Model(description), shape),
         Err(cause) => (Answer::Failure(cause), Vec::new()),
     };
-    match payload::write(std::io::BufWriter::new(File::from(out)), &answer, &shape) {
+    match payload::write(std::io::BufWriter::new(out), &answer, &shape) {
         Ok(()) => ExitCode::SUCCESS,
         Err(_) => ExitCode::FAILURE,
     }
 }
 
-fn limit_memory() {
-    let Some(bytes) = std::env::var(MEMORY_VARIABLE).ok().and_then(|text| text.parse().ok()) else { return };
-    let maximum = getrlimit(Resource::As).maximum;
-    let current = maximum.map_or(bytes, |maximum: u64| maximum.min(bytes));
-    // a limit that the system refuses leaves the parent's time limit
-    let _ = setrlimit(Resource::As, Rlimit { current: Some(current), maximum });
-}
-
 fn scale() -> f64 {
     std::env::var(SCALE_VARIABLE).ok().and_then(|text| text.parse().ok()).unwrap_or(1.0)
-}
-
-/// Keeps the pipe to the parent and points standard output to `/dev/null`.
-fn take_stdout() -> Option<OwnedFd> {
-    let pipe = rustix::io::dup(std::io::stdout()).ok()?;
-    let null = File::options().write(true).open("/dev/null").ok()?;
-    rustix::stdio::dup2_stdout(&null).ok()?;
-    Some(pipe)
 }
 
 fn read(path: &Path) -> Result<(Description, Vec<u8>), String> {
@@ -103,6 +79,11 @@ fn rehearse(model: &Model) -> Result<(), String> {
             [(u[0], v[0]), (u[1], v[0]), (u[0], v[1]), (u[1], v[1]), (0.5 * (u[0] + u[1]), 0.5 * (v[0] + v[1]))]
         {
             let _ = model.evaluate(face.id.into(), [s, t]);
+        }
+        for side in &model.geometry().faces[face.id.index()].sides {
+            for t in [side.range[0], 0.5 * (side.range[0] + side.range[1]), side.range[1]] {
+                let _ = side.pcurve.d1(t, &mut [0.0; 4]);
+            }
         }
         if let Ok(group) = Group::of_faces(model, &[face.id]) {
             let _ = group.closest(face.bounds.center(), None);

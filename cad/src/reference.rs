@@ -2,7 +2,8 @@
 //!
 //! | reference | meaning |
 //! |---|---|
-//! | `name:"WING UPPER"`, `name:WING` | the entity, or the ready group, of that name |
+//! | `name:"WING UPPER"`, `name:WING` | the entity, or the group of the file, of that name |
+//! | `group:WING` | all members of the ready group of that name: a group of the file, or faces that share the name |
 //! | `step:#17`, `iges:D19` | the entity with that id in its file; an IGES 402 group |
 //! | `step:#17@4/2` | that entity in instance 2 of instance 4 of an assembly; without the path where there is only one |
 //! | `face:7`, `edge-12`, `vertex:3` | by number, 1-based |
@@ -10,6 +11,7 @@
 
 use crate::ids::{EdgeId, EntityId, FaceId, VertexId};
 use crate::model::{Edge, Model};
+use std::collections::BTreeSet;
 use thiserror::Error;
 
 /// Why a reference does not lead to an entity.
@@ -17,7 +19,7 @@ use thiserror::Error;
 pub enum ReferenceError {
     /// Not of the grammar.
     #[error(
-        "{reference:?} is not a reference: expected name:NAME, step:#N, iges:DN, face:N, edge:N, vertex:N or faces:A|B"
+        "{reference:?} is not a reference: expected name:NAME, group:NAME, step:#N, iges:DN, face:N, edge:N, vertex:N or faces:A|B"
     )]
     Grammar {
         /// The text.
@@ -34,13 +36,18 @@ pub enum ReferenceError {
         hint: String,
     },
     /// Several entities of one kind answer to it.
-    #[error("{reference:?} is ambiguous: it may be {}", candidates.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "))]
+    #[error("{reference:?} is ambiguous: it may be {}; take a reference that only one has, or group:NAME for all that share a name", candidates.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "))]
     Ambiguous {
         /// The text.
         reference: String,
         /// All that answer.
         candidates: Vec<EntityId>,
     },
+}
+
+/// A name without quotes and spaces around it.
+fn bare(name: &str) -> &str {
+    name.trim().trim_matches('"')
 }
 
 impl Model {
@@ -52,7 +59,10 @@ impl Model {
         let text = reference.trim();
         let grammar = || ReferenceError::Grammar { reference: reference.to_owned() };
         if let Some(name) = text.strip_prefix("name:") {
-            return self.by_name(reference, name.trim().trim_matches('"'));
+            return self.by_name(reference, bare(name));
+        }
+        if let Some(name) = text.strip_prefix("group:") {
+            return self.by_group(reference, bare(name));
         }
         if text.starts_with("step:") || text.starts_with("iges:") {
             return self.by_origin(reference, text);
@@ -89,14 +99,11 @@ impl Model {
         let found: Vec<EntityId> =
             self.labelled().filter(|(_, label)| !name.is_empty() && label.name == name).map(|(id, _)| id).collect();
         match (groups.next(), groups.next(), found.len()) {
-            (Some(group), None, 0) => Ok(group.faces.iter().map(|&id| id.into()).collect()),
+            (Some(group), None, 0) => Ok(group.members.clone()),
             (None, _, 1) => Ok(found),
-            (None, _, 0) => {
-                let names: Vec<&str> = self.groups().iter().map(|g| g.name.as_str()).collect();
-                Err(self.unknown(reference, format!("no entity has that name; ready groups: {}", names.join(", "))))
-            }
-            (group, _, _) => {
-                let members = group.into_iter().flat_map(|group| group.faces.iter().map(|&id| id.into()));
+            (None, _, 0) => Err(self.unknown(reference, format!("no entity has that name; {}", self.ready()))),
+            (group, second, _) => {
+                let members = group.into_iter().chain(second).flat_map(|group| group.members.iter().copied());
                 Err(ReferenceError::Ambiguous {
                     reference: reference.to_owned(),
                     candidates: found.into_iter().chain(members).collect(),
@@ -105,13 +112,32 @@ impl Model {
         }
     }
 
+    fn by_group(&self, reference: &str, name: &str) -> Result<Vec<EntityId>, ReferenceError> {
+        let found: Vec<_> = self.groups().iter().filter(|group| group.name == name).collect();
+        match found.as_slice() {
+            [] => Err(self.unknown(reference, self.ready())),
+            [group] => Ok(group.members.clone()),
+            several => Err(ReferenceError::Ambiguous {
+                reference: reference.to_owned(),
+                candidates: several.iter().flat_map(|group| group.members.iter().copied()).collect(),
+            }),
+        }
+    }
+
+    /// The ready groups, for messages.
+    fn ready(&self) -> String {
+        let names: Vec<&str> =
+            self.groups().iter().map(|group| group.name.as_str()).filter(|n| !n.is_empty()).collect();
+        if names.is_empty() { "it has no ready groups".into() } else { format!("ready groups: {}", names.join(", ")) }
+    }
+
     fn by_origin(&self, reference: &str, origin: &str) -> Result<Vec<EntityId>, ReferenceError> {
         let answers = |of: &str| of.strip_prefix(origin).is_some_and(|rest| rest.is_empty() || rest.starts_with('@'));
         let found: Vec<EntityId> =
             self.labelled().filter(|(_, label)| answers(&label.reference)).map(|(id, _)| id).collect();
         match found.len() {
             0 => match self.groups().iter().find(|group| group.reference == origin) {
-                Some(group) => Ok(group.faces.iter().map(|&id| id.into()).collect()),
+                Some(group) => Ok(group.members.clone()),
                 None => Err(self.unknown(reference, "no face, edge, vertex or group has that id".into())),
             },
             1 => Ok(found),
@@ -139,15 +165,24 @@ impl Model {
         let between = |edge: &&Edge| edge.faces.contains(&a) && edge.faces.contains(&b) && (a != b || edge.seam);
         let mut shared: Vec<EntityId> = self.edges().iter().filter(between).map(|edge| edge.id.into()).collect();
         if shared.is_empty() {
-            // not sewn: an edge of one face that is doubled by one of the other, or a seam by one of the same
-            let of = |set: &[EdgeId], face| {
-                set.iter().filter(|&&edge| self.edge(edge).is_some_and(|edge| edge.faces.contains(&face))).count()
-            };
-            let needed = if a == b { 2 } else { 1 };
-            let sets = self.sewing().merged.iter();
-            let common = sets.filter(|set| of(set, a) >= needed && of(set, b) >= needed);
-            shared.extend(common.filter_map(|set| set.first()).map(|&edge| EntityId::Edge(edge)));
+            shared = self.between_unsewn(a, b).into_iter().map(EntityId::Edge).collect();
         }
         if shared.is_empty() { Err(self.unknown(reference, format!("{a} and {b} share no edge"))) } else { Ok(shared) }
+    }
+
+    /// Edges of one face that are doubled by edges of the other, or a seam by one of the same face. Of two that double each other it is the
+    /// first, of a long one and its piece the piece: it alone lies between the two faces.
+    fn between_unsewn(&self, a: FaceId, b: FaceId) -> Vec<EdgeId> {
+        let of = |set: &[EdgeId], face| -> Vec<&Edge> {
+            set.iter().filter_map(|&id| self.edge(id)).filter(|edge| edge.faces.contains(&face)).collect()
+        };
+        let mut between = BTreeSet::new();
+        for set in &self.sewing().merged {
+            let on_b = of(set, b);
+            for one in of(set, a) {
+                between.extend(on_b.iter().filter_map(|other| self.doubled_part(one, other)));
+            }
+        }
+        between.into_iter().collect()
     }
 }

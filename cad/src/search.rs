@@ -12,7 +12,7 @@
 use crate::certificate::{Bowl, Certificate};
 use crate::chart::{Jet, Rect};
 use crate::closed_form;
-use crate::foot::Foot;
+use crate::foot::{Doubt, Foot};
 use crate::group::{Group, Member};
 use crate::leaf::{EdgeGeometry, EdgeLeaf, FaceGeometry, FaceLeaf};
 use crate::newton::{self, Found, Local};
@@ -33,8 +33,12 @@ pub(crate) struct Search<'a> {
     pub(crate) group: &'a Group,
     pub(crate) x: DVec3,
     pub(crate) best: Option<Best>,
+    /// The best foot on an edge or vertex.
+    pub(crate) rim: Option<Best>,
+    /// Minima on surfaces that are outside the trim, as long as they are nearer than the best foot.
+    pub(crate) outside: Vec<Best>,
     budget: usize,
-    pub(crate) proven: bool,
+    pub(crate) doubt: Option<Doubt>,
     /// Squared distance that no leaf but that of `best` falls short of; 0 where not known.
     pub(crate) others: f64,
     /// Leaves of faces that must be cut, with their first local minimum: they wait until the bound is as small as the others make it.
@@ -49,7 +53,7 @@ impl Group {
         if x.is_finite() {
             let hint = hint.filter(|foot| foot.trace.group == self.number && foot.distance.is_finite());
             let seed = hint.map_or_else(|| self.seed(x), |foot| foot.trace.leaf as usize);
-            search.visit(seed, hint.map(|foot| foot.parameters));
+            search.visit(seed, hint.map(|foot| foot.trace.follow(x)));
             if !hint.is_some_and(|hint| search.stays_with(hint)) {
                 search.visit_all_but(seed);
             }
@@ -61,7 +65,7 @@ impl Group {
     /// benchmarks. Where the group is trimmed, its answer may lie outside.
     #[doc(hidden)]
     pub fn closest_without_proof(&self, x: DVec3) -> Foot {
-        let mut search = Search { proven: false, ..Search::new(self, x) };
+        let mut search = Search { doubt: Some(Doubt::NotSearched), ..Search::new(self, x) };
         let seed = self.seed(x);
         match self.members[seed] {
             Member::Face { face, leaf } => {
@@ -77,7 +81,17 @@ impl Group {
 
 impl<'a> Search<'a> {
     fn new(group: &'a Group, x: DVec3) -> Self {
-        Self { group, x, best: None, budget: CUT_BUDGET, proven: true, others: f64::INFINITY, deferred: Vec::new() }
+        Self {
+            group,
+            x,
+            best: None,
+            rim: None,
+            outside: Vec::new(),
+            budget: CUT_BUDGET,
+            doubt: None,
+            others: f64::INFINITY,
+            deferred: Vec::new(),
+        }
     }
 
     pub(crate) fn tie(&self) -> f64 {
@@ -91,7 +105,8 @@ impl<'a> Search<'a> {
 
     /// Whether the foot found on the leaf of `hint` is the closest point: all other leaves are farther away than it.
     fn stays_with(&mut self, hint: &Foot) -> bool {
-        let Some(best) = self.best.filter(|_| hint.proven && self.proven && self.deferred.is_empty()) else {
+        let Some(best) = self.best.filter(|_| hint.is_proven() && self.doubt.is_none() && self.deferred.is_empty())
+        else {
             return false;
         };
         let others = hint.trace.others - hint.trace.x.distance(self.x);
@@ -120,15 +135,19 @@ impl<'a> Search<'a> {
     /// A local minimum at which the foot may lie.
     fn offer(&mut self, member: usize, local: Local) {
         let distance = local.distance_squared.sqrt();
-        let better = |best: Best| {
-            distance < best.distance - self.tie() || (distance <= best.distance + self.tie() && member < best.member)
-        };
+        let tie = self.tie();
+        let better =
+            |best: Best| distance < best.distance - tie || (distance <= best.distance + tie && member < best.member);
+        let found = Best { member, parameters: local.parameters, distance };
+        if !matches!(self.group.members[member], Member::Face { .. }) && self.rim.is_none_or(better) {
+            self.rim = Some(found);
+        }
         if !distance.is_finite() {
             self.others = 0.0;
         } else if self.best.is_none_or(better) {
             let beaten = self.best.filter(|best| best.member != member);
             self.others = self.others.min(beaten.map_or(f64::INFINITY, |best| best.distance * best.distance));
-            self.best = Some(Best { member, parameters: local.parameters, distance });
+            self.best = Some(found);
         } else {
             self.others = self.others.min(local.distance_squared);
         }
@@ -143,21 +162,25 @@ impl<'a> Search<'a> {
             }
             Member::Edge { edge, leaf, .. } => {
                 if let Some(edge) = &geometry.edges[edge as usize] {
-                    self.visit_edge(index, edge, &edge.leaves[leaf as usize]);
+                    self.visit_edge(index, edge, &edge.leaves[leaf as usize], start.map(|p| p[0]));
                 }
             }
             Member::Vertex { vertex, .. } => {
-                let distance_squared = geometry.vertices[vertex as usize].distance_squared(self.x);
+                let distance_squared = geometry.vertices[vertex as usize].0.distance_squared(self.x);
                 self.offer(index, Local { parameters: [0.0; 2], distance_squared });
             }
         }
     }
 
     fn offer_on_face(&mut self, index: usize, face: &FaceGeometry, leaf: &FaceLeaf, local: Local) {
-        if local.distance_squared <= self.bound() && (!leaf.crossed || face.trim.contains(local.parameters)) {
-            self.offer(index, local);
-        } else {
-            self.others = self.others.min(local.distance_squared);
+        let near = local.distance_squared <= self.bound();
+        if near && (!leaf.crossed || face.trim.contains(local.parameters)) {
+            return self.offer(index, local);
+        }
+        self.others = self.others.min(local.distance_squared);
+        if near {
+            let distance = local.distance_squared.sqrt();
+            self.outside.push(Best { member: index, parameters: local.parameters, distance });
         }
     }
 
@@ -178,7 +201,7 @@ impl<'a> Search<'a> {
         if let Some(local) = closed_form::nearest(&face.chart, &leaf.rect, self.x) {
             return self.offer_on_face(index, face, leaf, local);
         }
-        self.proven &= leaf.sound;
+        self.doubt = self.doubt.max((!leaf.sound).then_some(Doubt::SampledHull));
         let start = start.filter(|p| p[0].is_finite() && p[1].is_finite()).map(|p| leaf.rect.clamp(p));
         if let Some(certificate) = &leaf.certificate {
             let modulus = certificate.modulus(self.x);
@@ -276,7 +299,7 @@ impl<'a> Search<'a> {
                 continue;
             }
             if self.budget == 0 {
-                self.proven = false;
+                self.doubt = self.doubt.max(Some(Doubt::Budget));
                 return;
             }
             self.budget -= 1;
@@ -302,19 +325,17 @@ impl<'a> Search<'a> {
         certificate.is_some_and(|c| c.modulus(self.x) > 0.0 || c.radius() < POINT * self.group.diagonal)
     }
 
-    fn visit_edge(&mut self, index: usize, edge: &EdgeGeometry, leaf: &EdgeLeaf) {
+    fn visit_edge(&mut self, index: usize, edge: &EdgeGeometry, leaf: &EdgeLeaf, start: Option<f64>) {
         if self.is_far(&leaf.slab) {
             return;
         }
         if let Some(local) = closed_form::nearest_on_curve(&edge.curve, leaf.range, self.x) {
             return self.offer(index, local);
         }
-        self.proven &= leaf.sound;
+        self.doubt = self.doubt.max((!leaf.sound).then_some(Doubt::SampledHull));
         if self.is_decided(leaf.certificate.as_ref()) {
-            return self.offer(
-                index,
-                newton::on_curve(&edge.curve, leaf.range, self.x, 0.5 * (leaf.range[0] + leaf.range[1])),
-            );
+            let start = start.filter(|t| t.is_finite()).unwrap_or(0.5 * (leaf.range[0] + leaf.range[1]));
+            return self.offer(index, newton::on_curve(&edge.curve, leaf.range, self.x, start));
         }
         let mut parts: Vec<EdgeLeaf> = vec![leaf.clone()];
         while let Some(part) = parts.pop() {
@@ -327,7 +348,7 @@ impl<'a> Search<'a> {
                 continue;
             }
             if self.budget == 0 {
-                self.proven = false;
+                self.doubt = self.doubt.max(Some(Doubt::Budget));
                 return;
             }
             self.budget -= 1;

@@ -1,5 +1,6 @@
 //! Doubled edges of unsewn models: IGES files in surface mode give every face edges of its own. Two open edges that run along each other
-//! within tolerance are one edge of the part, whatever the topology says. Projection on faces needs none of this.
+//! within tolerance are one edge of the part, whatever the topology says, and so is one that two or more shorter ones cover together.
+//! Projection on faces needs none of this.
 
 use crate::ids::{EdgeId, VertexId};
 use crate::leaf::EdgeGeometry;
@@ -10,6 +11,9 @@ use glam::DVec3;
 
 /// Points inside an edge that are held against another.
 const SAMPLES: u32 = 9;
+
+/// Points inside an edge that are held against pieces that may cover it.
+const COVER_SAMPLES: u32 = 32;
 
 /// Which open edges are one.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -22,24 +26,26 @@ pub struct Sewing {
 
 impl Sewing {
     pub(crate) fn of(model: &Model) -> Self {
-        let open: Vec<&Edge> = model.edges().iter().filter(|edge| is_open(edge)).collect();
-        let mut sewing = Self::default();
-        let mut taken = vec![false; open.len()];
-        for (i, edge) in open.iter().enumerate() {
-            if taken[i] {
-                continue;
+        let mut open: Vec<&Edge> = model.edges().iter().filter(|edge| is_open(edge)).collect();
+        let mut merged = Vec::new();
+        for find in [Model::twins, Model::pieces] {
+            let mut taken = vec![false; open.len()];
+            for i in 0..open.len() {
+                let free: Vec<usize> = (0..open.len()).filter(|&k| k != i && !taken[k]).collect();
+                let found = if taken[i] { Vec::new() } else { find(model, open[i], &open, &free) };
+                if !found.is_empty() {
+                    let mut set: Vec<EdgeId> =
+                        std::iter::once(i).chain(found.iter().copied()).map(|k| open[k].id).collect();
+                    set.sort_unstable();
+                    merged.push(set);
+                    taken[i] = true;
+                    found.into_iter().for_each(|k| taken[k] = true);
+                }
             }
-            let twins: Vec<usize> =
-                (i + 1..open.len()).filter(|&k| !taken[k] && model.are_one(edge, open[k])).collect();
-            twins.iter().for_each(|&k| taken[k] = true);
-            if twins.is_empty() {
-                sewing.open.push(edge.id);
-            } else {
-                let ids = std::iter::once(i).chain(twins).map(|k| open[k].id);
-                sewing.merged.push(ids.collect());
-            }
+            open = open.into_iter().zip(taken).filter(|(_, taken)| !taken).map(|(edge, _)| edge).collect();
         }
-        sewing
+        merged.sort_unstable();
+        Self { merged, open: open.into_iter().map(|edge| edge.id).collect() }
     }
 
     /// All edges that are the same as `edge`, itself included.
@@ -59,6 +65,17 @@ fn distance(edge: &EdgeGeometry, x: DVec3) -> f64 {
     edge.leaves.iter().map(|leaf| local(leaf.range)).fold(f64::INFINITY, f64::min).sqrt()
 }
 
+/// Points strictly inside an edge.
+fn samples(edge: &EdgeGeometry, count: u32) -> impl Iterator<Item = DVec3> {
+    let at = move |k: u32| edge.range[0] + (edge.range[1] - edge.range[0]) * f64::from(k) / f64::from(count);
+    (1..count).map(move |k| edge.curve.d2(at(k))[0])
+}
+
+/// Whether points of `one` lie on `other`.
+fn follows(one: &EdgeGeometry, other: &EdgeGeometry, count: u32, slack: f64) -> bool {
+    samples(one, count).all(|x| distance(other, x) <= slack)
+}
+
 impl Model {
     /// Doubled edges and those that stay open, found once and kept.
     pub fn sewing(&self) -> &Sewing {
@@ -69,23 +86,59 @@ impl Model {
         Some(self.vertex(vertex?)?.point)
     }
 
-    /// Whether two edges have the same ends and run along each other, within the file's tolerances of both (at least [`SEWING`]).
+    /// Among `free` edges, those that have the ends of `edge` and run along it.
+    fn twins(&self, edge: &Edge, open: &[&Edge], free: &[usize]) -> Vec<usize> {
+        free.iter().copied().filter(|&k| self.are_one(edge, open[k])).collect()
+    }
+
+    /// Among `free` edges, those that lie on `edge`, if together they cover it.
+    fn pieces(&self, edge: &Edge, open: &[&Edge], free: &[usize]) -> Vec<usize> {
+        let Some(whole) = self.curve(edge) else { return Vec::new() };
+        let lies_on = |piece: &Edge| {
+            let tolerance = self.tolerance(edge, piece);
+            let near = edge.bounds.grown(2.0 * tolerance);
+            let inside =
+                [piece.bounds.min, piece.bounds.max].iter().all(|corner| near.distance_squared(*corner) == 0.0);
+            inside && self.curve(piece).is_some_and(|piece| follows(piece, whole, SAMPLES, 2.0 * tolerance))
+        };
+        let pieces: Vec<usize> = free.iter().copied().filter(|&k| lies_on(open[k])).collect();
+        let curves: Vec<_> =
+            pieces.iter().filter_map(|&k| Some((self.curve(open[k])?, self.tolerance(edge, open[k])))).collect();
+        let covered = samples(whole, COVER_SAMPLES)
+            .all(|x| curves.iter().any(|(piece, tolerance)| distance(piece, x) <= 2.0 * tolerance));
+        if pieces.len() > 1 && covered { pieces } else { Vec::new() }
+    }
+
+    /// Of two edges that run along each other the one that is a piece of the other, the first where they are equally long.
+    pub(crate) fn doubled_part(&self, a: &Edge, b: &Edge) -> Option<EdgeId> {
+        if a.id == b.id {
+            return None;
+        }
+        let first = if self.are_one(a, b) { a.id < b.id } else { a.bounds.diagonal() < b.bounds.diagonal() };
+        let (one, other) = if first { (a, b) } else { (b, a) };
+        let slack = 2.0 * self.tolerance(a, b);
+        follows(self.curve(one)?, self.curve(other)?, SAMPLES, slack).then_some(one.id)
+    }
+
+    fn curve(&self, edge: &Edge) -> Option<&EdgeGeometry> {
+        self.geometry().edges[edge.id.index()].as_ref()
+    }
+
+    /// The file's tolerances of both edges, at least [`SEWING`].
+    fn tolerance(&self, a: &Edge, b: &Edge) -> f64 {
+        a.tolerance.max(b.tolerance).max(SEWING * self.diagonal())
+    }
+
+    /// Whether two edges have the same ends and run along each other, within tolerance.
     fn are_one(&self, a: &Edge, b: &Edge) -> bool {
-        let tolerance = a.tolerance.max(b.tolerance).max(SEWING * self.diagonal());
-        let near = |p: Option<DVec3>, q: Option<DVec3>| p.zip(q).is_some_and(|(p, q)| p.distance(q) <= 2.0 * tolerance);
+        let slack = 2.0 * self.tolerance(a, b);
+        let near = |p: Option<DVec3>, q: Option<DVec3>| p.zip(q).is_some_and(|(p, q)| p.distance(q) <= slack);
         let ([a0, a1], [b0, b1]) = (a.ends.map(|v| self.place(v)), b.ends.map(|v| self.place(v)));
         let (along, against) = (near(a0, b0) && near(a1, b1), near(a0, b1) && near(a1, b0));
         if !along && !against {
             return false;
         }
-        let geometry = |edge: &Edge| self.geometry().edges[edge.id.index()].as_ref();
-        let (Some(one), Some(other)) = (geometry(a), geometry(b)) else { return false };
-        let follows = |one: &EdgeGeometry, other: &EdgeGeometry| {
-            (1..SAMPLES).all(|k| {
-                let t = one.range[0] + (one.range[1] - one.range[0]) * f64::from(k) / f64::from(SAMPLES);
-                distance(other, one.curve.d2(t)[0]) <= 2.0 * tolerance
-            })
-        };
-        follows(one, other) && follows(other, one)
+        let (Some(one), Some(other)) = (self.curve(a), self.curve(b)) else { return false };
+        follows(one, other, SAMPLES, slack) && follows(other, one, SAMPLES, slack)
     }
 }

@@ -63,7 +63,7 @@ fn torus_by_analysis() {
             let foot = group.closest(x, None);
             check(&group, &model, &foot, x);
             assert!((foot.distance - expected).abs() < 1e-3 * minor, "{x}: {} against {expected}", foot.distance);
-            assert!(foot.proven);
+            assert!(foot.is_proven());
         }
     }
 }
@@ -82,7 +82,7 @@ fn feet_are_not_farther_than_samples() {
                 let x = random.in_box(face.bounds.min - margin, face.bounds.max + margin);
                 let foot = group.closest(x, None);
                 check(&group, &model, &foot, x);
-                unproven += usize::from(!foot.proven);
+                unproven += usize::from(!foot.is_proven());
                 let best = sampled(&model, &[face.id], &on, 30, x);
                 assert!(
                     foot.distance <= best + 1e-12 * model.diagonal(),
@@ -152,7 +152,7 @@ fn edges_against_samples_and_ends() {
                 })
                 .fold(f64::INFINITY, f64::min);
             assert!(foot.distance <= best + 1e-13 * model.diagonal(), "{}: {} > {best}", edge.id, foot.distance);
-            assert!(foot.proven, "{}", edge.id);
+            assert!(foot.is_proven(), "{}", edge.id);
         }
         let group = Group::of_vertices(&model, &edge.ends.map(Option::unwrap)).unwrap();
         let foot = group.closest(edge.bounds.center(), None);

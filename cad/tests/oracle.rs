@@ -29,6 +29,7 @@ struct Tally {
     queries: usize,
     ours: usize,
     unproven: usize,
+    stalled: usize,
     /// GeomAPI_ProjectPointOnSurf, ShapeAnalysis_Surface, BRepExtrema_DistShapeShape, dense grid.
     others: [usize; 4],
 }
@@ -81,8 +82,9 @@ impl<'a> Judge<'a> {
     fn off(&self, p: DVec3) -> Option<f64> {
         let bounds = self.model.faces()[self.face.index()].bounds;
         let inside = bounds.grown(0.001 * bounds.diagonal()).distance_squared(p) == 0.0;
-        let off = self.oracle.extrema(p.x, p.y, p.z, &mut [0.0; 3]).ok()?;
-        (inside && off <= WRONG * self.model.diagonal()).then_some(off)
+        let slack = WRONG * self.model.diagonal();
+        let off = self.oracle.off(p.x, p.y, p.z, slack).ok()?;
+        (inside && off <= slack).then_some(off)
     }
 
     /// Distances that the four methods find; `None` without an answer, or for one off the trimmed face that would be too near.
@@ -151,7 +153,11 @@ fn ask(model: &Model, group: &Group, judges: &mut [Judge], count: usize, tally: 
         };
         let excess = |d: f64| d > least + WRONG * model.diagonal();
         tally.queries += 1;
-        tally.unproven += usize::from(!ours.proven);
+        tally.unproven += usize::from(!ours.is_proven());
+        if matches!(ours.end, End::Stalled { .. }) {
+            tally.stalled += 1;
+            println!("    STALLED at {x}: {ours:?}, others {best:?}");
+        }
         if excess(ours.distance - slack) {
             tally.ours += 1;
             println!("    WORSE at {x}: {ours:?}, others {best:?}");
@@ -190,11 +196,12 @@ fn file(path: &Path, count: usize, total: &mut Tally) -> usize {
         asked += 1;
     }
     println!(
-        "{}: {asked} faces and groups, {} queries, ours worse {}, not proven {}; OCCT's worse or without answer: project {}, analysis {}, extrema {}; grid {}",
+        "{}: {asked} faces and groups, {} queries, ours worse {}, not proven {}, stalled {}; OCCT's worse or without answer: project {}, analysis {}, extrema {}; grid {}",
         path.display(),
         tally.queries,
         tally.ours,
         tally.unproven,
+        tally.stalled,
         tally.others[0],
         tally.others[1],
         tally.others[2],
@@ -203,6 +210,7 @@ fn file(path: &Path, count: usize, total: &mut Tally) -> usize {
     total.queries += tally.queries;
     total.ours += tally.ours;
     total.unproven += tally.unproven;
+    total.stalled += tally.stalled;
     total.others = [0, 1, 2, 3].map(|i| total.others[i] + tally.others[i]);
     asked
 }

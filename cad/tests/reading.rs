@@ -46,6 +46,44 @@ fn references_resolve() {
     }
 }
 
+/// A group of an IGES file, of faces or of free curves, by its reference; one without a name has no other.
+#[test]
+fn groups_of_the_file_are_ready_groups() {
+    for (name, kind, count) in [("unsewn.igs", "face", 7), ("curves.igs", "edge", 3)] {
+        let model = common::shape(name);
+        let [group] = model.groups() else { panic!("{:?}", model.groups()) };
+        assert!(group.reference.starts_with("iges:D") && group.members.len() == count, "{group:?}");
+        assert!(group.members.iter().all(|member| member.to_string().starts_with(kind)), "{group:?}");
+        assert_eq!(model.resolve(&group.reference).unwrap(), group.members);
+    }
+}
+
+/// `group:` takes all entities of one name, `name:` only what has the name to itself.
+#[test]
+fn names_that_several_have_are_ready_groups() {
+    let text = std::fs::read_to_string(common::path("weeble/weeble.step")).unwrap();
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("named.step");
+    let mut parts: Vec<String> = text.split("ADVANCED_FACE('").map(str::to_owned).collect();
+    for (part, name) in parts[1..].iter_mut().zip(["BODY", "BODY", "FAR FIELD"]) {
+        part.insert_str(0, name);
+    }
+    std::fs::write(&path, parts.join("ADVANCED_FACE('")).unwrap();
+    let model = Model::read(&path, &options()).unwrap();
+    let body = model.resolve("group:BODY").unwrap();
+    assert_eq!(body.len(), 2);
+    match model.resolve("name:BODY") {
+        Err(error @ cad::ReferenceError::Ambiguous { .. }) => {
+            let told = error.to_string();
+            assert!(body.iter().all(|id| told.contains(&id.to_string())) && told.contains("group:"), "{told}");
+        }
+        other => panic!("{other:?}"),
+    }
+    assert_eq!(model.resolve("name:\"FAR FIELD\"").unwrap().len(), 1);
+    let told = model.resolve("group:WING").unwrap_err().to_string();
+    assert!(told.contains("ready groups: BODY"), "{told}");
+}
+
 #[test]
 fn scale_moves_coordinates_and_tolerances_but_not_the_unit() {
     for name in ["weeble/weeble.step", "weeble/weeble.igs"] {
@@ -113,6 +151,50 @@ fn dangling_references_do_not_end_the_parent() {
         std::fs::write(&path, text.replacen(&format!("= {word}("), "= NOTHING(", 3)).unwrap();
         if let Err(error) = Model::read(&path, &options()) {
             assert!(error.to_string().contains(&format!("{i}.step")), "{error}");
+        }
+    }
+}
+
+/// Cycles, self-references, numbers that are none: an error that names the file, or a model, within the time limit.
+#[test]
+fn cyclic_and_self_referring_files_end_in_time() {
+    let weeble = std::fs::read_to_string(common::path("weeble/weeble.step")).unwrap();
+    let assembly = std::fs::read_to_string(common::shape_path("assembly.step")).unwrap();
+    let edited = |text: &str, word: &str, edit: &dyn Fn(&str) -> String| -> String {
+        let lines = text.split(";\n").map(|line| if line.contains(word) { edit(line) } else { line.to_owned() });
+        lines.collect::<Vec<_>>().join(";\n")
+    };
+    // every usage uses the whole in itself
+    let usages: Vec<&str> = assembly.split(";\n").filter(|line| line.contains("NEXT_ASSEMBLY_USAGE")).collect();
+    let whole = usages[0].rsplit('#').nth(1).unwrap().split(',').next().unwrap();
+    let cyclic = edited(&assembly, "NEXT_ASSEMBLY_USAGE", &|line| {
+        let (head, _) = line.rsplit_once('#').unwrap();
+        format!("{head}#{whole},$)")
+    });
+    // a placement whose origin is itself
+    let axis = weeble.split(";\n").find(|line| line.contains("= AXIS2_PLACEMENT_3D(")).unwrap();
+    let [own, origin] = [1, 2].map(|k| axis.split('#').nth(k).unwrap().split([' ', ',']).next().unwrap());
+    let narcissus = weeble.replacen(axis, &axis.replacen(&format!("#{origin},"), &format!("#{own},"), 1), 1);
+    let point = |value: &str| {
+        let at = weeble.find("CARTESIAN_POINT('',(").unwrap() + "CARTESIAN_POINT('',(".len();
+        let end = at + weeble[at..].find(')').unwrap();
+        format!("{}{value},{value},{value}{}", &weeble[..at], &weeble[end..])
+    };
+    let files =
+        [("cyclic.step", cyclic), ("self.step", narcissus), ("nan.step", point("NAN")), ("huge.step", point("1.E999"))];
+    let dir = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        let path = dir.path().join(name);
+        assert!(text != weeble && text != assembly, "{name} is spoilt");
+        std::fs::write(&path, text).unwrap();
+        let start = std::time::Instant::now();
+        let limit = Duration::from_secs(5);
+        let outcome = Model::read(&path, &cad::ReadOptions { timeout: limit, ..options() });
+        // the parent assembles what the child did; the machine may be busy
+        assert!(start.elapsed() < 3 * limit, "{name}: {:?}", start.elapsed());
+        match outcome {
+            Err(error) => assert!(error.to_string().contains(name), "{error}"),
+            Ok(model) => assert!(model.diagonal().is_finite(), "{name}: {model:?}"),
         }
     }
 }

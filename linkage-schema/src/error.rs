@@ -110,6 +110,24 @@ pub enum ReadError {
     },
 }
 
+impl ReadError {
+    /// The place that the message names; none where the file could not be opened.
+    pub fn position(&self) -> Option<Position> {
+        match self {
+            Self::Open { .. } => None,
+            Self::NotXml { .. } => Some(Position::START),
+            Self::Io { at, .. }
+            | Self::Encoding { at, .. }
+            | Self::Xml { at, .. }
+            | Self::Entity { at, .. }
+            | Self::Truncated { at, .. }
+            | Self::NotMeshLink { at, .. }
+            | Self::AttributeSize { at, .. }
+            | Self::Depth { at, .. } => Some(*at),
+        }
+    }
+}
+
 /// A document that has errors and is to be used all the same.
 #[derive(Debug, thiserror::Error)]
 #[error("{}:{first}{}", file.display(), more(*others))]

@@ -1,4 +1,7 @@
 //! What is wrong with a document: code, place, message, remedy.
+//!
+//! This crate finds `ML1..` (structure), `ML2..` (contents) and `ML3..` (references). The codes of what only a mesh (`ML4..`) or a CAD
+//! file (`ML5..`) can tell stand in the same table, so that every code has one meaning; the program that has both finds them.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -8,6 +11,8 @@ use crate::{Origin, Position};
 /// How bad a finding is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
+    /// Nothing is wrong; something was not, or could not be, looked at.
+    Note,
     /// The document can be used, but it deviates from the format or is suspicious.
     Warning,
     /// What the document says is lost or contradicts itself; it must not be used.
@@ -17,6 +22,7 @@ pub enum Severity {
 impl fmt::Display for Severity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
+            Self::Note => "note",
             Self::Warning => "warning",
             Self::Error => "error",
         })
@@ -24,10 +30,10 @@ impl fmt::Display for Severity {
 }
 
 macro_rules! codes {
-    ($($(#[$doc:meta])* $variant:ident = $id:literal, $severity:ident, $remedy:literal;)*) => {
+    ($($(#[doc = $doc:literal])* $variant:ident = $id:literal, $severity:ident, $remedy:literal;)*) => {
         /// Kind of a finding. Names and numbers are stable.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-        pub enum Code { $($(#[$doc])* $variant,)* }
+        pub enum Code { $($(#[doc = $doc])* $variant,)* }
 
         impl Code {
             /// All kinds, in the order of their ids.
@@ -36,6 +42,16 @@ macro_rules! codes {
             /// The stable id.
             pub fn id(self) -> &'static str {
                 match self { $(Self::$variant => $id,)* }
+            }
+
+            /// The kind with this id, in letters of either case.
+            pub fn from_id(id: &str) -> Option<Self> {
+                Self::ALL.iter().copied().find(|code| code.id().eq_ignore_ascii_case(id))
+            }
+
+            /// What it means, in one or two sentences.
+            pub fn meaning(self) -> &'static str {
+                match self { $(Self::$variant => concat!($($doc),*).trim_ascii_start(),)* }
             }
 
             /// How bad such a finding is.
@@ -52,6 +68,8 @@ macro_rules! codes {
 }
 
 codes! {
+    /// The file is not XML, is broken or cut off, or is no MeshLink document; nothing else was checked.
+    Unreadable = "ML001", Error, "mend the place, or write the file anew";
     /// The elements are in another namespace than MeshLink's; they are read by their local names.
     ForeignNamespace = "ML101", Warning, "put xmlns=\"https://cadence.com\" on the root element";
     /// An element that the format does not have at this place; it is skipped.
@@ -112,6 +130,56 @@ codes! {
     BadTransform = "ML310", Warning, "write a 4x4 matrix, row by row";
     /// A linkage whose source or target is neither the name nor the mid of a mesh element.
     UnknownMeshElement = "ML311", Warning, "write the name or the mid of a sheet or string of this document";
+    /// A point index that is beyond the mesh's nodes.
+    IndexBeyondMesh = "ML401", Error, "correct the index, or give the mesh that the linkage was written for";
+    /// All indices are off by one: the file counts points from 0, or from 2, where the format counts from 1.
+    IndexBase = "ML402", Error, "count points from 1";
+    /// Most of what is linked is not in the mesh: it is of another case, or was renumbered.
+    OtherMesh = "ML403", Error, "give the mesh that the linkage was written for";
+    /// A linked face that the mesh does not have.
+    NotInMesh = "ML404", Error, "correct the indices, or remove the face";
+    /// A linked face that is not on the mesh's boundary: it lies inside the volume.
+    InteriorFace = "ML405", Warning, "remove it, unless something is meant to lie inside the volume";
+    /// A face that is linked a second time.
+    RepeatedFace = "ML406", Error, "link every face once";
+    /// The edges of a string do not form one path or loop.
+    BrokenString = "ML407", Error, "close the gap, remove the branch, or split the string in two";
+    /// An edge of a string that no face of the mesh has.
+    EdgeNotInMesh = "ML408", Error, "correct the indices, or remove the edge";
+    /// A string that bounds no sheet: no linked face has its edges.
+    StringWithoutSheet = "ML409", Warning, "remove the string, or link the faces beside it";
+    /// A boundary patch some of whose faces are linked and some are not.
+    PartlyCovered = "ML410", Warning, "link the patch's other faces too; left so, they stay straight or plane";
+    /// Something called by a name that the mesh file does not have, or that is not looked up in meshes of this format.
+    UnknownMeshName = "ML411", Note, "write point indices in place of names, so that it can be checked";
+    /// The mesh that was given is not the file that the linkage names.
+    OtherMeshFile = "ML412", Note, "make sure that the linkage was written for this mesh";
+    /// Two sides of a periodic pair whose points do not correspond under the transform.
+    NotPeriodic = "ML413", Error, "correct the transform, or what it pairs";
+    /// A linked point that is on no boundary face.
+    StrayPoint = "ML414", Warning, "correct the index";
+    /// A reference to nothing in the CAD file, or to several entities of it.
+    UnknownReference = "ML501", Error, "write face-N, edge-N, vertex-N, step:#N, iges:DN or name:NAME as the CAD file has it";
+    /// A reference to an entity of the wrong kind: sheets lie on faces, strings on edges or faces.
+    WrongKind = "ML502", Error, "refer to a face from sheets, to an edge from strings";
+    /// Points that are farther from the CAD entities they are linked to than the tolerance.
+    OffGeometry = "ML503", Error, "link them to the entity on which they lie, or raise --tolerance if the mesh is this far off";
+    /// Faces that do not run along the surface they are linked to, or lie on its other side.
+    WrongSide = "ML504", Error, "link them to the surface of their own side";
+    /// A parameter vertex that, where most of its kind evaluate to their points, evaluates elsewhere.
+    WrongParameters = "ML505", Warning, "write the parameters anew, or leave them out: they are hints only";
+    /// Parameter vertices whose parameters are not this CAD kernel's; they are not compared.
+    ForeignParameters = "ML506", Note, "nothing needs to be done: parameters are hints, points are projected anew";
+    /// Faces of one sheet that cross a sharp edge of the CAD, which curving would round off or fold.
+    SharpEdgeCrossed = "ML507", Warning, "mesh up to the edge, and link the mesh edges on it by a string";
+    /// Mesh edges inside one sheet that lie on a sharp edge of the CAD, with no string that holds them there.
+    SharpEdgeFree = "ML508", Warning, "link the mesh edges on it by a string";
+    /// Geometry in a format that OpenCASCADE cannot read; what is linked to it is not compared with CAD.
+    UnreadableGeometry = "ML509", Note, "give the same geometry as STEP, IGES or BREP, with references that it has";
+    /// The CAD file that was given is not the one that the linkage names.
+    OtherCadFile = "ML510", Warning, "make sure that the references mean the same entities in this file";
+    /// CAD and mesh differ in size by a factor between units, or lie apart.
+    OtherScale = "ML511", Error, "bring both to one unit and place";
 }
 
 impl fmt::Display for Code {
@@ -165,7 +233,8 @@ impl Findings {
     /// How many findings of one kind are kept.
     pub const KEPT: usize = 200;
 
-    pub(crate) fn push(&mut self, code: Code, origin: Origin, message: impl FnOnce() -> String) {
+    /// Adds a finding; the message is made only if it is kept.
+    pub fn push(&mut self, code: Code, origin: Origin, message: impl FnOnce() -> String) {
         let count = self.counts.entry(code).or_default();
         *count += 1;
         if *count <= Self::KEPT {
@@ -195,7 +264,22 @@ impl Findings {
 
     /// How many errors there were, kept or not.
     pub fn errors(&self) -> usize {
-        self.counts.iter().filter(|(code, _)| code.severity() == Severity::Error).map(|(_, count)| count).sum()
+        self.of(Severity::Error)
+    }
+
+    /// How many there were of a severity, kept or not.
+    pub fn of(&self, severity: Severity) -> usize {
+        self.counts.iter().filter(|(code, _)| code.severity() == severity).map(|(_, count)| count).sum()
+    }
+
+    /// Appends those of another list.
+    pub fn append(&mut self, other: &Self) {
+        for (&code, &count) in &other.counts {
+            let own = self.counts.entry(code).or_default();
+            let room = Self::KEPT.saturating_sub(*own);
+            *own += count;
+            self.list.extend(other.list.iter().filter(|finding| finding.code == code).take(room).cloned());
+        }
     }
 
     /// The first error.

@@ -146,7 +146,7 @@ pub struct FaceRun {
     pub shape: FaceShape,
     /// How the indices are written.
     pub encoding: Encoding,
-    /// Corner indices of all faces, as in the file: counted from 1.
+    /// Corner indices of all faces, as in the file: counted from 1. A 0 in them is an error that reading finds.
     pub indices: Box<[u32]>,
     /// Its place.
     pub origin: Origin,

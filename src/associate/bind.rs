@@ -149,6 +149,7 @@ impl Binder<'_> {
                 label: label.to_owned(),
                 entities: names(entities),
                 count: off,
+                of: nodes.len(),
                 node: self.mesh.node_tags[nodes[worst].index()],
                 at: places[worst],
                 distance: feet[worst].distance,

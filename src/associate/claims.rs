@@ -4,7 +4,7 @@ use cad::{EdgeId, EntityId, FaceId, Model, VertexId};
 
 use super::Boundary;
 use crate::element::Order;
-use crate::mesh::{EntityKey, Mesh, NodeId};
+use crate::mesh::{EntityKey, Mesh, NodeId, Periodic};
 
 /// Mesh items that are said to lie on CAD entities.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -26,6 +26,10 @@ pub struct Claims {
     pub strings: Vec<Claimed<[NodeId; 2]>>,
     /// Points on CAD vertices.
     pub points: Vec<Claimed<NodeId>>,
+    /// Pairs of mesh entities whose nodes correspond.
+    pub periodic: Vec<Periodic>,
+    /// What could not be used, and need not stop the work.
+    pub notes: Vec<String>,
     /// Whether the CAD is the file that the claims were made for.
     pub trusted: bool,
 }

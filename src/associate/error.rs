@@ -26,11 +26,11 @@ pub enum AssociateError {
     Place { mesh: f64, distance: f64 },
     /// A tag or number that means another place on this CAD.
     #[error(
-        "{label} is tied to {entities}, but {count} of its points are not there: the farthest, node {node} at {at}, is \
+        "{label} is tied to {entities}, but {count} of its {of} points are not there: the farthest, node {node} at {at}, is \
          {distance:.3e} away (limit {limit:.3e}). The numbers may belong to another CAD file; give a linkage file, or \
          raise --max-offset if the mesh is this far off its CAD"
     )]
-    Off { label: String, entities: String, count: usize, node: u64, at: DVec3, distance: f64, limit: f64 },
+    Off { label: String, entities: String, count: usize, of: usize, node: u64, at: DVec3, distance: f64, limit: f64 },
     /// A tag that is another entity's number on this CAD.
     #[error(
         "{label} is tied to {entities}, which its points are near to but not on; they lie on {other}: the numbers belong to \
@@ -52,4 +52,16 @@ pub enum AssociateError {
          (1 to {faces}); give a linkage file"
     )]
     Nothing { surfaces: usize, faces: usize },
+}
+
+impl AssociateError {
+    /// Whether this says of entity tags that they are not the CAD's numbers, rather than that a few points are off.
+    pub(super) fn tags_are_of_no_use(&self) -> bool {
+        match self {
+            Self::Off { count, of, .. } => 2 * count > *of,
+            Self::Group { .. } => false,
+            // A box of another size or place may be that of other entities than meant.
+            _ => true,
+        }
+    }
 }

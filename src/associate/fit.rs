@@ -8,8 +8,6 @@ use crate::mesh::Mesh;
 
 /// How far mesh and CAD boxes may differ in size before the unit is taken to differ.
 const SAME_SIZE: f64 = 1.5;
-/// Factors between units of length that people mix up.
-const UNITS: [f64; 7] = [1000.0, 25.4, 304.8, 12.0, 100.0, 10.0, 39.370_078_740_157_48];
 
 /// The plane of points that lie in one, within `slack`.
 pub(super) fn plane_through(points: &[DVec3], slack: f64) -> Option<Plane> {
@@ -23,12 +21,7 @@ pub(super) fn plane_through(points: &[DVec3], slack: f64) -> Option<Plane> {
 }
 
 /// Refuses a CAD of another size or at another place than what is tied to it.
-pub(super) fn check_boxes(
-    mesh: &Mesh,
-    boundary: &Boundary,
-    model: &Model,
-    claims: &Claims,
-) -> Result<(), AssociateError> {
+pub fn check_boxes(mesh: &Mesh, boundary: &Boundary, model: &Model, claims: &Claims) -> Result<(), AssociateError> {
     let linked = || claims.sheets.iter().filter(|s| !s.entities.is_empty());
     let corners = linked().flat_map(|s| s.items.iter()).flat_map(|&f| boundary.corners[f].iter());
     let own = Aabb::of_points(corners.map(|n| mesh.points[n.index()]));
@@ -39,8 +32,7 @@ pub(super) fn check_boxes(
     let (size, cad) = (own.diagonal(), theirs.diagonal());
     let ratio = size / cad;
     if !(1.0 / SAME_SIZE..=SAME_SIZE).contains(&ratio) {
-        let near = |factor: &f64| (ratio / factor).ln().abs() < 0.1;
-        return Err(match UNITS.into_iter().flat_map(|u| [u, 1.0 / u]).find(near) {
+        return Err(match cad::unit_factor(size, cad) {
             Some(factor) => AssociateError::Scale { mesh: size, cad, factor },
             None => AssociateError::Size { mesh: size, cad, factor: ratio },
         });

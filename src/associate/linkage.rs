@@ -6,8 +6,9 @@ use cad::{EntityId, Model, ReferenceError};
 use linkage_schema::{Entity, ModelLinks};
 use rustc_hash::FxHashMap;
 
-use super::{Boundary, Claimed, Claims};
-use crate::mesh::{Mesh, NodeId};
+use super::{Boundary, Claimed, Claims, NotPeriodic, periodic_records, periodic_sheets};
+use crate::element::Order;
+use crate::mesh::{EntityKey, Mesh, NodeId};
 
 /// Why a linkage file could not be used with this mesh and CAD. Every variant names the file and the place.
 #[derive(Debug, thiserror::Error)]
@@ -46,6 +47,14 @@ pub enum LinkageError {
         /// The mesh's largest number.
         last: u64,
     },
+    /// A periodic pair that is none.
+    #[error("{place}: {cause}; correct the transform, or what it pairs")]
+    Periodic {
+        /// File, line and column.
+        place: String,
+        /// What does not correspond.
+        cause: NotPeriodic,
+    },
     /// A face that is no boundary face.
     #[error("{place}: {label} has a face with the nodes {nodes:?}, which is no boundary face of the mesh")]
     Face {
@@ -69,24 +78,37 @@ pub fn read_linkage(path: &Path, mesh: &Mesh, boundary: &Boundary, model: &Model
         return Err(LinkageError::Empty { file: path.to_owned() });
     }
     let numbers = mesh.node_tags.iter().zip(0..).filter_map(|(&tag, n)| Some((tag, NodeId::new(n).ok()?))).collect();
-    let reader = Reader { path, boundary, model, numbers };
+    let reader = Reader { path, mesh, boundary, model, numbers };
     let mut claims = Claims { trusted: names(&document, model.path()), ..Claims::default() };
     for links in &resolution.models {
         reader.model(links, &mut claims)?;
+    }
+    for pair in &resolution.pairs {
+        let Some(sheets) = periodic_sheets(pair, &resolution) else { continue };
+        let node = |index: u32| reader.numbers.get(&u64::from(index)).copied();
+        let records = periodic_records(pair, sheets, mesh, boundary, &node);
+        let place = || reader.place(pair.linkage.origin);
+        claims.periodic.extend(records.map_err(|cause| LinkageError::Periodic { place: place(), cause })?);
     }
     Ok(claims)
 }
 
 /// Whether every CAD file that the document names has the name of this one.
 fn names(document: &linkage_schema::Document, cad: &Path) -> bool {
+    !document.geometry_files.is_empty() && document.geometry_files.iter().all(|file| same_file(&file.filename, cad))
+}
+
+/// Whether a document means this file: it has the same name, in whatever folder; documents may leave the extension out.
+#[must_use]
+pub fn same_file(named: &str, path: &Path) -> bool {
     // A path in the document may be another system's: compare what follows the last separator of either kind.
-    let name = |text: &str| text.rsplit(['/', '\\']).next().unwrap_or(text).to_owned();
-    let own = name(&cad.to_string_lossy());
-    !document.geometry_files.is_empty() && document.geometry_files.iter().all(|file| name(&file.filename) == own)
+    let name = named.rsplit(['/', '\\']).next().unwrap_or(named);
+    [path.file_name(), path.file_stem()].into_iter().flatten().any(|own| own.to_string_lossy() == name)
 }
 
 struct Reader<'a> {
     path: &'a Path,
+    mesh: &'a Mesh,
     boundary: &'a Boundary,
     model: &'a Model,
     numbers: FxHashMap<u64, NodeId>,
@@ -94,6 +116,7 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn model(&self, links: &ModelLinks, claims: &mut Claims) -> Result<(), LinkageError> {
+        self.named(links, claims)?;
         for sheet in &links.sheets {
             for run in &sheet.faces {
                 let label = format!("sheet {:?}", sheet.name().unwrap_or(""));
@@ -123,6 +146,50 @@ impl Reader<'_> {
             let items = nodes.collect::<Result<_, _>>()?;
             let entities = self.entities(point.entities(), &place, &label)?;
             push(&mut claims.points, Claimed { label, items, entities });
+        }
+        Ok(())
+    }
+
+    /// Sheets and strings that are called by the names which the mesh file gives to sets of faces and edges.
+    fn named(&self, links: &ModelLinks, claims: &mut Claims) -> Result<(), LinkageError> {
+        let unknown = |place: String, label: &str, what: &str| {
+            format!("{place}: {label} calls {what} by name, which the mesh file does not have; not used")
+        };
+        let known = |entity: EntityKey, name: &str| self.mesh.names_of(entity).iter().any(|own| own == name);
+        for sheet in &links.sheets {
+            let label = format!("sheet {:?}", sheet.name().unwrap_or(""));
+            let place = self.place(sheet.sheet.origin);
+            if let Some(name) = sheet.reference {
+                let faces = 0..self.boundary.faces.len();
+                let items: Vec<usize> = faces.filter(|&f| known(self.boundary.faces[f].entity, name)).collect();
+                let entities = sheet.target.as_deref().map_or(&[][..], |target| &target.entities);
+                let entities = self.entities(entities, &place, &label)?;
+                if items.is_empty() {
+                    claims.notes.push(unknown(place, &label, &format!("{name:?}")));
+                } else {
+                    claims.sheets.push(Claimed { label, items, entities });
+                }
+            } else if !sheet.named.is_empty() {
+                claims.notes.push(unknown(place, &label, "faces"));
+            }
+        }
+        for string in &links.strings {
+            let label = format!("string {:?}", string.name().unwrap_or(""));
+            let place = self.place(string.string.origin);
+            if let Some(name) = string.reference {
+                let blocks = self.mesh.blocks_of(1).filter(|(_, block)| known(block.entity, name));
+                let edges = blocks.flat_map(|(_, block)| block.elements(Order::LINEAR).map(|ends| [ends[0], ends[1]]));
+                let items: Vec<[NodeId; 2]> = edges.collect();
+                let entities = string.target.as_deref().map_or(&[][..], |target| &target.entities);
+                let entities = self.entities(entities, &place, &label)?;
+                if items.is_empty() {
+                    claims.notes.push(unknown(place, &label, &format!("{name:?}")));
+                } else {
+                    claims.strings.push(Claimed { label, items, entities });
+                }
+            } else if !string.named.is_empty() {
+                claims.notes.push(unknown(place, &label, "edges"));
+            }
         }
         Ok(())
     }

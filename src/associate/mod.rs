@@ -13,10 +13,19 @@
 
 mod bind;
 mod boundary;
+mod choice;
 mod claims;
+mod document;
 mod error;
 mod fit;
+mod infer;
+mod joint;
 mod linkage;
+mod path;
+mod periodic;
+mod side;
+mod source;
+mod summary;
 
 use glam::DVec3;
 
@@ -24,9 +33,19 @@ use cad::Group;
 
 pub use bind::associate;
 pub use boundary::{Boundary, BoundaryFace};
+pub use choice::{Choice, UnknownPatch};
 pub use claims::{Claimed, Claims};
+pub use document::{TooLarge, document};
 pub use error::AssociateError;
-pub use linkage::{LinkageError, read_linkage};
+pub use fit::check_boxes;
+pub use infer::{Doubt, Incidence, Inference, ON_CAD, Tolerance, infer};
+pub use joint::{Joints, SHARP, normal_at};
+pub use linkage::{LinkageError, read_linkage, same_file};
+pub use path::paths;
+pub use periodic::{NotPeriodic, periodic_records, periodic_sheets};
+pub use side::{Side, sides};
+pub use source::{TieError, Tied, tie};
+pub use summary::{Patch, Summary, Undecided, summary};
 
 /// A set of CAD faces that mesh faces lie on.
 #[derive(Debug)]

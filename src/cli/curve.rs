@@ -1,16 +1,18 @@
 //! `sagitta curve`.
 
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use cad::ReadOptions;
 use clap::Args;
 
+use super::form::Form;
 use super::progress::Teller;
 use super::{DONE, Failure, GIVEN_UP, NOT_CERTIFIED, STOPPED, print, write_json};
+use crate::associate::Choice;
 use crate::element::Order;
-use crate::formats::{self, WriteOptions, msh};
+use crate::formats;
 use crate::pipeline::{self, Curved, Job};
 use crate::report::{fields, report};
 use crate::smooth;
@@ -18,20 +20,29 @@ use crate::smooth;
 /// Options of `sagitta curve`.
 #[derive(Args)]
 pub(super) struct Options {
-    /// The linear mesh: Gmsh MSH 4.1 or 2.2
+    /// The linear mesh: MSH, CGNS, UGRID, SU2, VTU, legacy VTK or PLOT3D
     mesh: PathBuf,
     /// The CAD it was made on: STEP, IGES or BREP
     #[arg(long, value_name = "FILE")]
     cad: PathBuf,
-    /// MeshLink file that ties mesh and CAD together; without it the mesh's entity tags do
+    /// MeshLink file that ties mesh and CAD together; without it the mesh's entity tags do, or else geometry
     #[arg(long, value_name = "LINK.xml")]
     linkage: Option<PathBuf>,
     /// Polynomial order of the curved mesh: 2, 3 or 4
     #[arg(long, value_name = "P", value_parser = order)]
     order: Order,
-    /// The curved mesh: .msh for solvers, .vtu for pictures
-    #[arg(short, long, value_name = "OUT")]
-    output: PathBuf,
+    /// The curved mesh: .msh or .cgns for solvers, .vtu for pictures
+    #[arg(short, long, value_name = "OUT", required_unless_present = "dry_run")]
+    output: Option<PathBuf>,
+    /// Tell what lies on what, and stop there
+    #[arg(long)]
+    dry_run: bool,
+    /// Curve these patches only: physical names or surface numbers
+    #[arg(long, value_name = "PATCH,...", value_delimiter = ',', conflicts_with = "straight")]
+    curve: Vec<String>,
+    /// Leave these patches straight
+    #[arg(long, value_name = "PATCH,...", value_delimiter = ',')]
+    straight: Vec<String>,
     /// Write the report as JSON too
     #[arg(long, value_name = "R.json")]
     report: Option<PathBuf>,
@@ -65,15 +76,8 @@ pub(super) struct Options {
     /// Write the mesh even if not every element is proven valid
     #[arg(long)]
     keep_invalid: bool,
-    /// VTU: leave the boundary elements out, for readers that refuse mixed dimensions
-    #[arg(long)]
-    volume_only: bool,
-    /// Version of the MSH file
-    #[arg(long, value_name = "4.1|2.2", default_value = "4.1", value_parser = msh_version)]
-    msh_version: msh::Version,
-    /// MSH: write text rather than binary
-    #[arg(long)]
-    ascii: bool,
+    #[command(flatten)]
+    form: Form,
     /// Seconds after which reading the CAD is given up
     #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = positive)]
     cad_timeout: f64,
@@ -99,7 +103,8 @@ fn scale(text: &str) -> Result<Scale, String> {
     if text == "auto" { Ok(Scale(None)) } else { positive(text).map(|factor| Scale(Some(factor))) }
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+/// A finite number above 0.
+pub(super) fn positive(text: &str) -> Result<f64, String> {
     let value = text.parse::<f64>().ok().filter(|v| v.is_finite() && *v > 0.0);
     value.ok_or_else(|| format!("{text:?} is not a positive number"))
 }
@@ -109,20 +114,21 @@ fn share(text: &str) -> Result<f64, String> {
     value.ok_or_else(|| format!("{text:?} is not between 0 and 1"))
 }
 
-fn msh_version(text: &str) -> Result<msh::Version, String> {
-    match text {
-        "4.1" => Ok(msh::Version::V4_1),
-        "2.2" => Ok(msh::Version::V2_2),
-        _ => Err(format!("{text:?} is no version that is written: give 4.1 or 2.2")),
-    }
-}
-
 impl Options {
+    fn patches(&self) -> Choice {
+        match (&self.curve[..], &self.straight[..]) {
+            ([], []) => Choice::All,
+            ([], straight) => Choice::Straight(straight.to_vec()),
+            (curve, _) => Choice::Curve(curve.to_vec()),
+        }
+    }
+
     fn job(&self) -> Job {
         Job {
             mesh: self.mesh.clone(),
             cad: self.cad.clone(),
             linkage: self.linkage.clone(),
+            patches: self.patches(),
             order: self.order,
             max_offset: self.max_offset,
             freeze_linear: self.freeze_linear,
@@ -141,7 +147,9 @@ impl Options {
 
 /// Curves a mesh, writes it, and tells how it went.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
-    formats::check_output(&options.output)?;
+    if let Some(output) = &options.output {
+        formats::check_output(output)?;
+    }
     if let Some(report) = &options.report {
         formats::check_folder(report)?;
     }
@@ -149,14 +157,18 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
         rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global()?;
     }
     let job = options.job();
-    let mut teller = Teller::new(options.quiet, options.time_limit.map(Duration::from_secs_f64))?;
+    let Some(output) = options.output.as_ref().filter(|_| !options.dry_run) else {
+        return dry_run(&job, options.report.as_deref());
+    };
+    let limit = options.time_limit.map(Duration::from_secs_f64);
+    let mut teller = Teller::new(options.quiet).stoppable(limit)?;
     let curved = pipeline::curve(&job, &mut teller);
     teller.finish();
     let curved = curved?;
     let report = report(&job, &curved);
     let certified = report.certified;
     if certified || options.keep_invalid {
-        write(options, &curved)?;
+        write(options, output, &curved)?;
     }
     if let Some(path) = &options.report {
         write_json(path, &report)?;
@@ -165,7 +177,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     if let Some(stop) = teller.stop {
         print(&stop.to_string())?;
     }
-    let written = options.output.display();
+    let written = output.display();
     if !certified && !options.keep_invalid {
         eprintln!("sagitta: {written}: not written, as not every element is proven valid (--keep-invalid writes it)");
     } else {
@@ -174,16 +186,18 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     Ok(exit_code(&curved))
 }
 
-fn write(options: &Options, curved: &Curved) -> Result<(), Failure> {
-    let fields = fields(curved);
-    let encoding = if options.ascii { msh::Encoding::Ascii } else { msh::Encoding::Binary };
-    let how = WriteOptions {
-        msh_version: options.msh_version,
-        msh_encoding: encoding,
-        volume_only: options.volume_only,
-        fields: &fields,
-    };
-    formats::write(&options.output, &curved.mesh, &how)?;
+/// Tells what lies on what.
+fn dry_run(job: &Job, report: Option<&Path>) -> Result<u8, Failure> {
+    let summary = pipeline::association(job)?;
+    if let Some(path) = report {
+        write_json(path, &summary)?;
+    }
+    print(&summary.to_string())?;
+    Ok(DONE)
+}
+
+fn write(options: &Options, output: &Path, curved: &Curved) -> Result<(), Failure> {
+    formats::write(output, &curved.mesh, &options.form.with(&fields(curved)))?;
     Ok(())
 }
 

@@ -3,10 +3,12 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use cad::{Aabb, Health, Kind as EntityKind, Model, ReadOptions};
 use clap::Args;
 
+use super::curve::positive;
 use super::{DONE, Failure, print};
 use crate::formats;
 use crate::mesh::Mesh;
@@ -16,6 +18,9 @@ use crate::mesh::Mesh;
 pub(super) struct Options {
     /// A CAD, mesh or linkage file
     file: PathBuf,
+    /// Seconds after which reading CAD is given up
+    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = positive)]
+    cad_timeout: f64,
 }
 
 /// Tells what a file holds; its kind is found by its content.
@@ -24,7 +29,10 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let text = match kind(path)? {
         Kind::Mesh => mesh(&formats::read(path)?)?,
         Kind::Linkage => linkage(path)?,
-        Kind::Cad => model(&Model::read(path, &ReadOptions::default())?)?,
+        Kind::Cad => {
+            let timeout = Duration::from_secs_f64(options.cad_timeout);
+            model(&Model::read(path, &ReadOptions { timeout, ..ReadOptions::default() })?)?
+        }
     };
     print(&format!("{}: {}", path.display(), text.trim_end()))?;
     Ok(DONE)
@@ -43,9 +51,10 @@ fn kind(path: &Path) -> Result<Kind, Failure> {
     let open = std::fs::File::open(path).and_then(|file| file.take(4096).read_to_end(&mut head));
     open.map_err(|error| format!("{}: cannot be read: {error}", path.display()))?;
     let text = head.trim_ascii_start();
-    let is_mesh = text.starts_with(b"$MeshFormat") || text.starts_with(b"$Comments");
+    if formats::is_mesh(path)? {
+        return Ok(Kind::Mesh);
+    }
     Ok(match text {
-        _ if is_mesh => Kind::Mesh,
         [b'<', ..] | [0xef, 0xbb, 0xbf, b'<', ..] => Kind::Linkage,
         _ => Kind::Cad,
     })
@@ -71,6 +80,9 @@ fn mesh(mesh: &Mesh) -> Result<String, Failure> {
     }
     for (entity, faces) in patches {
         writeln!(text, "  {entity}: {faces} faces {}", mesh.names_of(entity).join(","))?;
+    }
+    for note in &mesh.notes {
+        writeln!(text, "  note: {note}")?;
     }
     Ok(text)
 }
@@ -113,8 +125,9 @@ fn model(model: &Model) -> Result<String, Failure> {
         writeln!(text, "  {} {} {} {:?}", face.id, face.kind, label.reference, label.name)?;
     }
     for group in model.groups() {
-        let members: Vec<String> = group.faces.iter().map(ToString::to_string).collect();
-        writeln!(text, "  group {:?}: {}", group.name, members.join(", "))?;
+        let members: Vec<String> = group.members.iter().map(ToString::to_string).collect();
+        let name = if group.name.is_empty() { &group.reference } else { &group.name };
+        writeln!(text, "  group {name:?}: {}", members.join(", "))?;
     }
     flaws(&mut text, &health)?;
     Ok(text)

@@ -12,7 +12,7 @@ use crate::pipeline::{Observer, Step};
 use crate::smooth::Progress;
 
 /// Plain lines come no more often than this.
-const INTERVAL: Duration = Duration::from_secs(2);
+pub(super) const INTERVAL: Duration = Duration::from_secs(2);
 
 /// Why smoothing ended before it was done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +30,7 @@ impl std::fmt::Display for Stop {
     }
 }
 
-/// Tells how the work goes on, and ends the smoothing on an interrupt or after a time limit.
+/// Tells how the work goes on, and may end the smoothing on an interrupt or after a time limit.
 pub(super) struct Teller {
     interrupted: Arc<AtomicBool>,
     limit: Option<Duration>,
@@ -44,17 +44,22 @@ pub(super) struct Teller {
 }
 
 impl Teller {
-    /// Begins to count the time, and takes over interrupts: the first ends the smoothing, the second the program.
-    pub(super) fn new(quiet: bool, limit: Option<Duration>) -> Result<Teller, ctrlc::Error> {
+    /// Begins to count the time.
+    pub(super) fn new(quiet: bool) -> Teller {
         let bar = (!quiet && std::io::stderr().is_terminal()).then(spinner);
-        let interrupted = Arc::new(AtomicBool::new(false));
-        let flag = Arc::clone(&interrupted);
+        let interrupted = Arc::default();
+        Teller { interrupted, limit: None, stop: None, bar, quiet, start: Instant::now(), smoothing: None, last: None }
+    }
+
+    /// Ends smoothing after a time limit, and takes over interrupts: the first ends the smoothing, the second the program.
+    pub(super) fn stoppable(self, limit: Option<Duration>) -> Result<Teller, ctrlc::Error> {
+        let flag = Arc::clone(&self.interrupted);
         ctrlc::set_handler(move || {
             if flag.swap(true, Ordering::Relaxed) {
                 std::process::exit(i32::from(INTERRUPTED));
             }
         })?;
-        Ok(Teller { interrupted, limit, stop: None, bar, quiet, start: Instant::now(), smoothing: None, last: None })
+        Ok(Teller { limit, ..self })
     }
 
     /// Takes the live line away.
@@ -64,7 +69,8 @@ impl Teller {
         }
     }
 
-    fn say(&self, text: String) {
+    /// Tells one thing.
+    pub(super) fn say(&self, text: String) {
         match &self.bar {
             Some(bar) => bar.set_message(text),
             None if self.quiet => {}

@@ -15,11 +15,13 @@ mod orientation;
 pub mod samples;
 mod subdivision;
 pub mod type_code;
+mod volume;
 
 pub use cell::{Cell, Face, Order, OrderOutOfRange};
 pub use extension::interior_extension;
 pub use lattice::{face_lattice, lattice};
 pub use net::Net;
-pub use orientation::{canonical, interior_count, interior_slots, interior_start};
+pub use orientation::{canonical, interior_count, interior_slots, interior_start, mirrored};
 pub use samples::Samples;
 pub use subdivision::corner_tets;
+pub use volume::signed_volume;

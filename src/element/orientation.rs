@@ -41,6 +41,16 @@ pub fn interior_slots(cell: Cell, order: Order, seen: [u8; 4]) -> Vec<usize> {
         .collect()
 }
 
+/// The nodes of an element with its first two axes exchanged: the same shape, turned the other way round.
+///
+/// Slot `n` of the turned element holds node `mirrored[n]` of the given one.
+#[must_use]
+pub fn mirrored(cell: Cell, order: Order) -> Vec<u8> {
+    let nodes = lattice(cell, order);
+    let exchanged = |&[i, j, k]: &[u8; 3]| nodes.iter().position(|&at| at == [j, i, k]).unwrap_or_default() as u8;
+    nodes.iter().map(exchanged).collect()
+}
+
 /// Number of an element's nodes before those of its interior.
 #[must_use]
 pub fn interior_start(cell: Cell, order: Order) -> usize {

@@ -112,3 +112,40 @@ pub fn vtk(cell: Cell, order: Order) -> Option<u8> {
         Cell::Pyramid => linear.then_some(14),
     }
 }
+
+/// What a VTK cell type with a number of nodes stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VtkType {
+    /// A cell with all nodes of its lattice, in the order of VTK's Lagrange cells.
+    Complete(Cell, Order),
+    /// A cell that leaves out interior nodes, or has nodes that no lattice has.
+    Incomplete,
+    /// A cell of a known type with a number of nodes that none of its orders has.
+    Count,
+    /// No cell that could be curved.
+    Unknown,
+}
+
+/// What a VTK cell type stands for. The complete quadratic cells have the order of the Lagrange cells of order 2.
+#[must_use]
+pub fn from_vtk(code: i64, nodes: usize) -> VtkType {
+    let cell = match code {
+        1 => Cell::Point,
+        3 | 21 | 68 => Cell::Line,
+        5 | 22 | 69 => Cell::Triangle,
+        9 | 28 | 70 => Cell::Quad,
+        10 | 24 | 71 => Cell::Tet,
+        14 => Cell::Pyramid,
+        13 | 32 | 73 => Cell::Prism,
+        12 | 29 | 72 => Cell::Hex,
+        23 | 25 | 26 | 27 | 30 | 31 | 33..=37 | 74 => return VtkType::Incomplete,
+        _ => return VtkType::Unknown,
+    };
+    let fixed = match code {
+        1 | 3 | 5 | 9 | 10 | 12 | 13 | 14 => Some(1),
+        21 | 22 | 24 | 28 | 29 | 32 => Some(2),
+        _ => None,
+    };
+    let fits = |order: &Order| fixed.is_none_or(|p| order.get() == p) && cell.node_count(*order) == nodes;
+    Order::all().find(fits).map_or(VtkType::Count, |order| VtkType::Complete(cell, order))
+}

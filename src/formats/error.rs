@@ -4,6 +4,7 @@ use std::fmt;
 use std::io;
 use std::path::PathBuf;
 
+use super::cgns::CgnsFault;
 use crate::element::Order;
 use crate::mesh::{EntityKey, TooMany};
 
@@ -49,12 +50,14 @@ pub enum Error {
 }
 
 /// A place in a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Place {
     /// A line of text, counted from 1.
     Line(u64),
     /// An offset in binary data, counted from 0.
     Byte(u64),
+    /// A node of a CGNS file, by its path.
+    Node(String),
 }
 
 impl fmt::Display for Place {
@@ -62,6 +65,7 @@ impl fmt::Display for Place {
         match self {
             Place::Line(line) => write!(f, "line {line}"),
             Place::Byte(offset) => write!(f, "byte {offset}"),
+            Place::Node(path) => write!(f, "node {path}"),
         }
     }
 }
@@ -129,6 +133,8 @@ pub enum Fault {
     RepeatedNode(u64),
     #[error("{what} {by} refers to node {node}, which the file does not hold")]
     UnknownNode { what: &'static str, by: u64, node: u64 },
+    #[error("element {by} refers to node {node}, but the nodes are numbered {first} to {last}")]
+    NodeRange { by: u64, node: i64, first: i64, last: i64 },
     #[error(
         "element type {0} is unknown; points, lines, triangles, quadrilaterals, tets, pyramids, prisms and hexes are read"
     )]
@@ -145,6 +151,24 @@ pub enum Fault {
     ElementDimension { entity: EntityKey, found: usize },
     #[error("entity dimension {0} is outside 0 to 3")]
     EntityDimension(i32),
+    #[error(transparent)]
+    Cgns(#[from] CgnsFault),
+    #[error(
+        "cell {tag} is of type {code}, which leaves out interior nodes or is none of Lagrange's; write Lagrange or linear cells"
+    )]
+    IncompleteCell { tag: u64, code: i64 },
+    #[error(
+        "cell {tag} is of type {code}: polygons, polyhedra, strips and voxels are not read; write tets, pyramids, prisms, hexes"
+    )]
+    UnknownCell { tag: u64, code: i64 },
+    #[error(
+        "cell {tag} of type {code} has {found} nodes, which no order from 1 to 4 has; its writer lacks such cells: export the mesh as MSH or CGNS"
+    )]
+    CellNodes { tag: u64, code: i64, found: usize },
+    #[error("an array cannot be decoded ({0}): the file is damaged")]
+    Compressed(String),
+    #[error("the XML is damaged: {0}")]
+    Xml(String),
     #[error("{0}; this program's limit")]
     TooMany(#[from] TooMany),
 }

@@ -4,25 +4,52 @@
 //! writer takes a stream. Files, their names and what happens to them on failure are dealt with here. Node orders come
 //! from [`crate::element::order`], element numbers from [`crate::element::type_code`].
 
+mod assembly;
+pub mod cgns;
+mod detect;
 mod error;
 mod field;
 pub mod msh;
+mod numbers;
 mod output;
-mod vtu;
+mod plot3d;
+mod scanner;
+mod skin;
+mod su2;
+mod turned;
+mod ugrid;
+mod vtk;
 
 use std::fs::File;
-use std::io::{BufRead, BufReader};
-use std::path::Path;
+use std::io::{BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+
+use detect::{Format, HEAD, Refusal, detect};
+use numbers::Numbers;
 
 pub use error::{Error, Fault, Flaw, Place};
 pub use field::{Field, Support, Values};
 
 use crate::mesh::Mesh;
 
-const UNKNOWN_NAME: &str = "the name ends in no known format; name it .msh or .vtu";
+const UNKNOWN_NAME: &str = "the name ends in no known format; name it .msh, .cgns or .vtu";
 
 /// Bytes asked of the system at a time.
 const BUFFER: usize = 1 << 20;
+
+/// How files are read.
+#[derive(Clone, Debug)]
+pub struct ReadOptions {
+    /// Program that calls [`cgns::serve_reader`] when its first argument is [`cgns::READER_SUBCOMMAND`]; default this very
+    /// program.
+    pub reader: PathBuf,
+}
+
+impl Default for ReadOptions {
+    fn default() -> ReadOptions {
+        ReadOptions { reader: std::env::current_exe().unwrap_or_else(|_| PathBuf::from("/proc/self/exe")) }
+    }
+}
 
 /// How files are written, where a format leaves a choice.
 #[derive(Clone, Copy, Debug, Default)]
@@ -37,48 +64,72 @@ pub struct WriteOptions<'a> {
     pub fields: &'a [Field],
 }
 
-/// The formats that can be told apart by their first bytes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
-    Msh,
-}
-
-/// What a file seems to be, by its first bytes; else what to tell the user.
-fn detect(head: &[u8]) -> Result<Format, &'static str> {
-    let text = head.trim_ascii_start();
-    if text.starts_with(b"$") {
-        return Ok(Format::Msh);
-    }
-    Err(if head.is_empty() {
-        "the file is empty"
-    } else if head.starts_with(b"\x89HDF\r\n\x1a\n") {
-        "an HDF5 (CGNS?) file; only Gmsh MSH files are read: convert it"
-    } else if head.starts_with(b"ISO-10303-21") {
-        "a STEP file, which is CAD, not a mesh"
-    } else if text.starts_with(b"<") {
-        "an XML file; only Gmsh MSH files are read: convert it"
-    } else {
-        "not a mesh file of a known format; Gmsh MSH 4.1 and 2.2 are read"
-    })
-}
-
-/// Reads a mesh file; the format is found by content.
+/// Reads a mesh file; the format is found by content and name.
+///
+/// What reading changed or left out stands in [`Mesh::notes`].
 ///
 /// # Errors
 /// [`Error::Io`], [`Error::Format`] where the content is of no known format, [`Error::Content`] where it is damaged.
 pub fn read(path: &Path) -> Result<Mesh, Error> {
+    read_with(path, &ReadOptions::default())
+}
+
+/// As [`read`], with a choice of the program that reads CGNS files.
+///
+/// # Errors
+/// Those of [`read`].
+pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Mesh, Error> {
+    let failed = |source| Error::Io { file: path.to_path_buf(), action: "read", source };
+    let of_format = |reason| Error::Format { file: path.to_path_buf(), reason };
+    let (mut input, length) = open(path)?;
+    let head = input.fill_buf().map_err(failed)?;
+    let format = detect(path, &head[..head.len().min(HEAD)]).map_err(|refusal| of_format(refusal.reason))?;
+    let flaw = |flaw: Flaw| flaw.of(path);
+    match format {
+        Format::Msh => msh::read(input, length).map_err(flaw),
+        Format::Cgns => {
+            drop(input);
+            cgns::read(path, length, options)
+        }
+        Format::Ugrid => {
+            let encoding = ugrid::encoding(path, head, length).map_err(of_format)?;
+            let mut mesh = ugrid::read(&mut Numbers::new(input, length, encoding)).map_err(flaw)?;
+            ugrid::name_surfaces(&mut mesh, path)?;
+            Ok(mesh)
+        }
+        Format::Su2 => su2::read(input, length).map_err(flaw),
+        Format::LegacyVtk => vtk::read_legacy(input, length).map_err(flaw),
+        Format::Vtu => {
+            let mut content = Vec::new();
+            input.read_to_end(&mut content).map_err(failed)?;
+            vtk::read_xml(&content).map_err(flaw)
+        }
+        Format::Plot3d => {
+            let head = head.to_vec();
+            plot3d::read(input, &head, path, length)
+        }
+    }
+}
+
+/// Whether a file is of a mesh format by its content or name; it may be damaged, or of a format that is not read.
+///
+/// # Errors
+/// [`Error::Io`].
+pub fn is_mesh(path: &Path) -> Result<bool, Error> {
+    let (mut input, _) = open(path)?;
+    let head = input.fill_buf().map_err(|source| Error::Io { file: path.to_path_buf(), action: "read", source })?;
+    Ok(!matches!(detect(path, &head[..head.len().min(HEAD)]), Err(Refusal { is_mesh: false, .. })))
+}
+
+/// A regular file and its length.
+fn open(path: &Path) -> Result<(BufReader<File>, u64), Error> {
     let failed = |source| Error::Io { file: path.to_path_buf(), action: "read", source };
     let file = File::open(path).map_err(failed)?;
     let metadata = file.metadata().map_err(failed)?;
     if !metadata.is_file() {
         return Err(failed(std::io::Error::other("it is not a regular file")));
     }
-    let mut input = BufReader::with_capacity(BUFFER, file);
-    let head = input.fill_buf().map_err(failed)?;
-    let format = detect(head).map_err(|reason| Error::Format { file: path.to_path_buf(), reason: reason.into() })?;
-    match format {
-        Format::Msh => msh::read(input, metadata.len()).map_err(|flaw| flaw.of(path)),
-    }
+    Ok((BufReader::with_capacity(BUFFER, file), metadata.len()))
 }
 
 /// Whether a mesh could be written under this name: to be asked before long work.
@@ -86,8 +137,9 @@ pub fn read(path: &Path) -> Result<Mesh, Error> {
 /// # Errors
 /// [`Error::Format`] for a name of no known format, [`Error::Io`] where the folder does not exist.
 pub fn check_output(path: &Path) -> Result<(), Error> {
-    let known = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("msh") || e.eq_ignore_ascii_case("vtu"));
-    if !known {
+    let known =
+        |extension: &std::ffi::OsStr| ["msh", "cgns", "vtu"].iter().any(|known| extension.eq_ignore_ascii_case(known));
+    if !path.extension().is_some_and(known) {
         return Err(Error::Format { file: path.to_path_buf(), reason: UNKNOWN_NAME.into() });
     }
     check_folder(path)
@@ -128,7 +180,8 @@ pub fn write(path: &Path, mesh: &Mesh, options: &WriteOptions<'_>) -> Result<(),
         Some("msh") => {
             output::write_whole(path, |out| msh::write(out, mesh, options.msh_version, options.msh_encoding))
         }
-        Some("vtu") => output::write_whole(path, |out| vtu::write(out, mesh, options.fields, options.volume_only)),
+        Some("cgns") => output::write_by_name(path, |part| cgns::write(part, mesh)),
+        Some("vtu") => output::write_whole(path, |out| vtk::write(out, mesh, options.fields, options.volume_only)),
         _ => Err(Error::Format { file: path.to_path_buf(), reason: UNKNOWN_NAME.into() }),
     }
 }

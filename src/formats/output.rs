@@ -19,6 +19,19 @@ pub(super) fn write_whole(
     path: &Path,
     content: impl FnOnce(&mut BufWriter<File>) -> Result<(), Unwritten>,
 ) -> Result<(), Error> {
+    write_part(path, |part| {
+        let mut out = BufWriter::with_capacity(BUFFER, part.file.try_clone()?);
+        content(&mut out)?;
+        Ok(out.flush()?)
+    })
+}
+
+/// As [`write_whole`], for a content that opens the file itself, by its temporary name.
+pub(super) fn write_by_name(path: &Path, content: impl FnOnce(&Path) -> Result<(), Unwritten>) -> Result<(), Error> {
+    write_part(path, |part| content(&part.path))
+}
+
+fn write_part(path: &Path, content: impl FnOnce(&Part) -> Result<(), Unwritten>) -> Result<(), Error> {
     let failed = |action| move |source| Error::Io { file: path.to_path_buf(), action, source };
     // A link stays a link: its target is replaced.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
@@ -26,13 +39,10 @@ pub(super) fn write_whole(
         return Err(failed("write")(io::Error::other("it exists and is not a regular file")));
     }
     let part = Part::create(&target).map_err(failed("create"))?;
-    let file = part.file.try_clone().map_err(failed("create"))?;
-    let mut out = BufWriter::with_capacity(BUFFER, file);
-    content(&mut out).map_err(|unwritten| match unwritten {
+    content(&part).map_err(|unwritten| match unwritten {
         Unwritten::Io(source) => failed("write")(source),
         Unwritten::Inexpressible(reason) => Error::Inexpressible { file: path.to_path_buf(), reason },
     })?;
-    out.flush().map_err(failed("write"))?;
     part.rename(&target).map_err(failed("write"))
 }
 

@@ -1,12 +1,16 @@
 //! Meshes of order 1 to 4, as they stand in files: points, blocks of elements, entities and their names.
 
+mod condition;
 mod entity;
 mod ids;
+mod zone;
 
 use glam::DVec3;
 
+pub use condition::Condition;
 pub use entity::{Entity, EntityKey, Periodic, PhysicalName};
 pub use ids::{ElementId, NodeId, TooMany};
+pub use zone::Zone;
 
 use crate::element::{Cell, Order};
 
@@ -34,6 +38,13 @@ pub struct Mesh {
     pub physical_names: Vec<PhysicalName>,
     /// Pairs of entities whose nodes correspond.
     pub periodic: Vec<Periodic>,
+    /// Boundary conditions, where the file names them apart from the groups (CGNS, UGRID).
+    pub conditions: Vec<Condition>,
+    /// Parts whose nodes the file numbers each from 1 (CGNS, PLOT3D); empty where there is one such part, as `node_tags`
+    /// are its numbers then.
+    pub zones: Vec<Zone>,
+    /// What reading changed or left out.
+    pub notes: Vec<String>,
 }
 
 /// A run of elements of one cell on one entity.
@@ -76,19 +87,38 @@ impl Mesh {
         self.blocks.iter().enumerate().filter(move |(_, b)| b.cell.dimension() == dimension)
     }
 
+    /// Tags of the physical groups that an entity's elements belong to, each once; a negative one means reversed orientation.
+    #[must_use]
+    pub fn physical_tags_of(&self, entity: EntityKey) -> Vec<i32> {
+        let of_entity = self.entities.iter().filter(|e| e.key == entity).flat_map(|e| &e.physical_tags);
+        let of_blocks = self.blocks.iter().filter(|b| b.entity == entity).flat_map(|b| &b.physical_tags);
+        let mut tags: Vec<i32> = Vec::new();
+        for &tag in of_entity.chain(of_blocks) {
+            if !tags.contains(&tag) {
+                tags.push(tag);
+            }
+        }
+        tags
+    }
+
     /// Names of the physical groups that an entity's elements belong to, each once.
     #[must_use]
     pub fn names_of(&self, entity: EntityKey) -> Vec<String> {
-        let of_entity = self.entities.iter().filter(|e| e.key == entity).flat_map(|e| &e.physical_tags);
-        let of_blocks = self.blocks.iter().filter(|b| b.entity == entity).flat_map(|b| &b.physical_tags);
         let mut names = Vec::new();
-        for tag in of_entity.chain(of_blocks) {
+        for tag in self.physical_tags_of(entity) {
             let known = self.physical_names.iter().find(|n| n.dimension == entity.dimension && n.tag == tag.abs());
             if let Some(known) = known.filter(|known| !names.contains(&known.name)) {
                 names.push(known.name.clone());
             }
         }
         names
+    }
+
+    /// What people call an entity: its physical names, else its dimension and number.
+    #[must_use]
+    pub fn label(&self, entity: EntityKey) -> String {
+        let names = self.names_of(entity);
+        if names.is_empty() { entity.to_string() } else { names.join(",") }
     }
 
     /// The points of an element.

@@ -48,6 +48,7 @@ use rayon::prelude::*;
 use crate::associate::{Association, Boundary, Host};
 use crate::elevate::{Carriers, Elevated};
 use crate::mesh::NodeId;
+use crate::periodic::Ties;
 use crate::project::Projected;
 use field::Field;
 pub use field::WallFace;
@@ -59,6 +60,7 @@ pub fn perturb(
     boundary: &Boundary,
     association: &Association,
     projected: &Projected,
+    ties: &Ties,
 ) -> Vec<DVec3> {
     let planar = |host: Host| association.plane_of(host).is_some();
     let curved = |host: Host| matches!(host, Host::Surface(_)) && !planar(host);
@@ -82,6 +84,7 @@ pub fn perturb(
         }
     }
     displacement = carried;
+    ties.carry(&elevated.mesh.points, &mut displacement);
 
     let planes = wall_faces(elevated, boundary, |f| planar(association.faces[f]));
     let mut on_plane = vec![false; linear];

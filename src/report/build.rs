@@ -52,7 +52,7 @@ pub fn report(job: &Job, curved: &Curved) -> Report {
             end: curved.smoothed.end,
         },
         projections: Projections { count: curved.projected.projections, unproven: curved.projected.unproven },
-        notes: curved.association.notes.clone(),
+        notes: curved.mesh.notes.iter().chain(&curved.association.notes).cloned().collect(),
         seconds: curved.seconds.iter().map(|&(step, seconds)| StepReport { step: step.name(), seconds }).collect(),
         peak_memory: peak_memory(),
         threads: rayon::current_num_threads(),

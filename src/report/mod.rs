@@ -5,6 +5,7 @@
 
 mod build;
 mod check;
+mod feet;
 mod text;
 
 use serde::Serialize;
@@ -13,6 +14,7 @@ use crate::smooth::Summary;
 
 pub use build::{fields, report};
 pub use check::CheckReport;
+pub use feet::{CadReport, FEET_SCHEMA, FeetReport, end_of};
 
 /// Name and version of the JSON document.
 pub const SCHEMA: &str = "sagitta-report-1";

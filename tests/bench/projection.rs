@@ -4,7 +4,6 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
 #[path = "../common/iges.rs"]
-#[path = "../common/iges.rs"]
 mod iges;
 
 use cad::{FaceId, Foot, Group, Kind, Model, READER_SUBCOMMAND, ReadOptions};
@@ -12,14 +11,16 @@ use glam::DVec3;
 use iges::Patch;
 use opencascade_sys as sys;
 use std::f64::consts::{PI, TAU};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Excess of distance over the best of all methods that counts as wrong, fraction of the diagonal.
 const WRONG: f64 = 1e-9;
 
-/// Runs of each method; the best counts, because other work of the machine only slows it down.
-const RUNS: usize = 7;
+/// Runs of each method over each chunk of queries; the best counts, because other work of the machine only slows it down.
+const RUNS: usize = 15;
+const CHUNK: usize = 500;
 
 struct Case {
     name: &'static str,
@@ -100,16 +101,21 @@ fn queries(model: &Model, faces: &[FaceId], count: usize, reach: f64) -> Vec<DVe
     (0..count).map(point).collect()
 }
 
-/// Runs a method over all points; best rate of some runs.
-fn rate<T>(count: usize, mut run: impl FnMut() -> Vec<T>) -> (f64, Vec<T>) {
-    let mut best = f64::INFINITY;
+/// Runs a method over all points, chunk by chunk; the rate if every chunk took the best of its times.
+fn rate<T>(count: usize, mut run: impl FnMut(Range<usize>) -> Vec<T>) -> (f64, Vec<T>) {
+    let chunks: Vec<Range<usize>> = (0..count).step_by(CHUNK).map(|at| at..(at + CHUNK).min(count)).collect();
+    let mut best = vec![f64::INFINITY; chunks.len()];
     let mut answer = Vec::new();
     for _ in 0..RUNS {
-        let start = Instant::now();
-        answer = run();
-        best = best.min(start.elapsed().as_secs_f64());
+        answer.clear();
+        for (chunk, best) in chunks.iter().zip(&mut best) {
+            let start = Instant::now();
+            let part = run(chunk.clone());
+            *best = best.min(start.elapsed().as_secs_f64());
+            answer.extend(part);
+        }
     }
-    (count as f64 / best, answer)
+    (count as f64 / best.iter().sum::<f64>(), answer)
 }
 
 /// OCCT's global search over all faces of the case.
@@ -153,23 +159,23 @@ fn compare(
 ) {
     let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let (one, two) = (pool(1), pool(2));
-    let (ours, feet) = rate(xs.len(), || one.install(|| group.closest_batch(xs, &[])));
-    let (pair, _) = rate(xs.len(), || two.install(|| group.closest_batch(xs, &[])));
+    let (ours, feet) = rate(xs.len(), |r| one.install(|| group.closest_batch(&xs[r], &[])));
+    let (pair, _) = rate(xs.len(), |r| two.install(|| group.closest_batch(&xs[r], &[])));
     let hints: Vec<Option<Foot>> = feet.iter().copied().map(Some).collect();
     // a later sweep of the smoother: every point has moved a little, in any direction
     let mut random = Random(2);
     let mut shake = || 2.0 * random.unit() - 1.0;
     let moves = feet.iter().map(|foot| 0.02 * foot.distance * DVec3::new(shake(), shake(), shake()));
     let moved: Vec<DVec3> = xs.iter().zip(moves).map(|(x, by)| *x + by).collect();
-    let (hinted, _) = rate(xs.len(), || one.install(|| group.closest_batch(&moved, &hints)));
-    let (bare, quick) = rate(xs.len(), || xs.iter().map(|&x| group.closest_without_proof(x)).collect());
+    let (hinted, _) = rate(xs.len(), |r| one.install(|| group.closest_batch(&moved[r.clone()], &hints[r])));
+    let (bare, quick) = rate(xs.len(), |r| xs[r].iter().map(|&x| group.closest_without_proof(x)).collect());
     let some = &xs[..case.global.min(xs.len())];
     let start = Instant::now();
     let theirs: Vec<f64> = some.iter().map(|&x| occt(oracles, x)).collect();
     let global = some.len() as f64 / start.elapsed().as_secs_f64();
     let best: Vec<f64> = feet.iter().zip(&quick).map(|(a, b)| a.distance.min(b.distance)).collect();
     let best_of_all: Vec<f64> = best.iter().zip(&theirs).map(|(a, b)| a.min(*b)).collect();
-    let unproven = feet.iter().filter(|foot| !foot.proven).count();
+    let unproven = feet.iter().filter(|foot| !foot.is_proven()).count();
     println!("  {name:4} ours {ours:9.3e}/s, {unproven} of {} not proven", xs.len());
     println!("       hinted {hinted:9.3e}/s = {:.2} x; two threads {:.2} x one", hinted / ours, pair / ours);
     println!(
@@ -200,7 +206,7 @@ fn weeble() {
     let xs = queries(&model, &faces, 100_000, 0.005);
     let start = Instant::now();
     let feet = group.closest_batch(&xs, &[]);
-    let unproven = feet.iter().filter(|foot| !foot.proven).count();
+    let unproven = feet.iter().filter(|foot| !foot.is_proven()).count();
     let seconds = start.elapsed().as_secs_f64();
     println!(
         "weeble's torus group: 1e5 points in {seconds:.3} s on {} threads, {unproven} not proven",

@@ -91,20 +91,24 @@ rust::Vec<Label> labels_of(const Shape& shape, const Origins& origins, const Pat
   return labels;
 }
 
-// Named sets of the file: each becomes labels of kind 3 that share a name.
+// Named sets of the file: each becomes labels of kind 3 (faces) and 4 (edges that bound none of those) that share a name.
 void add_group(rust::Vec<Label>& labels, const Shape& shape, const TopoDS_Shape& group, const std::string& reference, const std::string& name) {
-  TopTools_IndexedMapOfShape members;
-  TopExp::MapShapes(group, TopAbs_FACE, members);
-  for (int i = 1; i <= members.Extent(); i++) {
-    const int index = shape.faces().FindIndex(members(i));
-    if (index == 0) continue;
+  TopTools_IndexedMapOfShape faces, edges, sides;
+  TopExp::MapShapes(group, TopAbs_FACE, faces);
+  TopExp::MapShapes(group, TopAbs_EDGE, edges);
+  for (int i = 1; i <= faces.Extent(); i++) TopExp::MapShapes(faces(i), TopAbs_EDGE, sides);
+  const auto add = [&](int kind, int number) {
+    if (number == 0) return;
     Label label{};
-    label.kind = 3;
-    label.index = uint32_t(index - 1);
+    label.kind = uint8_t(kind);
+    label.index = uint32_t(number - 1);
     label.reference = lossy(reference);
     label.name = lossy(name);
     labels.push_back(label);
-  }
+  };
+  for (int i = 1; i <= faces.Extent(); i++) add(3, shape.faces().FindIndex(faces(i)));
+  for (int i = 1; i <= edges.Extent(); i++)
+    if (!sides.Contains(edges(i))) add(4, shape.edges().FindIndex(edges(i)));
 }
 
 TopoDS_Shape scaled_by(const TopoDS_Shape& shape, double factor) {

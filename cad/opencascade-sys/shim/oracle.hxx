@@ -17,8 +17,14 @@ public:
   void analyse(double x, double y, double z, std::array<double, 3>& found);
   // BRepExtrema_DistShapeShape to the trimmed face: the distance; writes the point.
   double extrema(double x, double y, double z, std::array<double, 3>& found) const;
+  // How far a point is off the trimmed face. BRepExtrema alone is not enough: OCCT 7.6 hands the face's tolerance (1e-7 mm) to its
+  // classifier as a tolerance of u and v, and so takes points for inside that are 3e-5 mm outside where a parameter is long.
+  // Here the classifier has no tolerance, and a point outside is as far off as its nearest edge. `slack` is how far the parameters
+  // that ShapeAnalysis finds for the point may miss it.
+  double off(double x, double y, double z, double slack) const;
 
 private:
+  bool is_outside(const gp_Pnt2d& uv) const;
   TopoDS_Face face_;
   GeomAPI_ProjectPointOnSurf search_;
   Handle(ShapeAnalysis_Surface) analysis_;

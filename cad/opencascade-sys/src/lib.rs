@@ -166,6 +166,7 @@ mod ffi {
         fn project(self: Pin<&mut Oracle>, x: f64, y: f64, z: f64, found: &mut [f64; 3]) -> Result<bool>;
         fn analyse(self: Pin<&mut Oracle>, x: f64, y: f64, z: f64, found: &mut [f64; 3]) -> Result<()>;
         fn extrema(self: &Oracle, x: f64, y: f64, z: f64, found: &mut [f64; 3]) -> Result<f64>;
+        fn off(self: &Oracle, x: f64, y: f64, z: f64, slack: f64) -> Result<f64>;
     }
 }
 

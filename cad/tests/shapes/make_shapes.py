@@ -152,11 +152,18 @@ def moved(shape, x, angle):
     return shape.Located(TopLoc_Location(trsf))
 
 
-def unsewn(name):
+def iges(name, shape):
+    """Surface mode: every face with edges of its own, free curves as entities 110, 100 and 126."""
     writer = IGESControl_Writer("MM", 0)
-    writer.AddShape(box_with_hole())
+    writer.AddShape(shape)
     writer.ComputeModel()
     assert writer.Write(os.path.join(folder, name))
+
+
+def pieces():
+    """Three faces of a cylinder: one below, along its whole rim, two above, side by side."""
+    cylinder = Geom_CylindricalSurface(place(0), 2.0)
+    return compound([face(cylinder, 0, 2, 0, 1), face(cylinder, 0, 0.8, 1, 3), face(cylinder, 0.8, 2, 1, 3)])
 
 
 def main():
@@ -169,7 +176,9 @@ def main():
     free = BRepBuilderAPI_MakeEdge(curve([(0, 0, 0), (1, 2, 0), (3, -1, 1), (4, 0, 2), (6, 1, 0)])).Edge()
     line = BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 0), gp_Pnt(1, 2, 3)).Edge()
     step("curves.step", compound([circle, free, line]), STEPControl_GeometricCurveSet)
-    unsewn("unsewn.igs")
+    iges("curves.igs", compound([circle, free, line]))
+    iges("unsewn.igs", box_with_hole())
+    iges("pieces.igs", pieces())
 
 
 main()

@@ -67,14 +67,24 @@ impl<R: BufRead> Cursor<R> {
     fn text_indices(&mut self, shape: &Shape) -> Option<Vec<u32>> {
         let mut indices = Vec::new();
         let mut bad = Vec::new();
+        let mut trusted = true;
         for (offset, word) in words(&self.text) {
             match index(word) {
-                Some(number) => indices.push(number),
-                None => bad.push((offset, word.len())),
+                Some(number) => {
+                    // A zero is no point, but with the other indices it tells that the file counts from 0.
+                    if number == 0 {
+                        bad.push((offset, word.len()));
+                    }
+                    indices.push(number);
+                }
+                None => {
+                    trusted = false;
+                    bad.push((offset, word.len()));
+                }
             }
         }
         bad.iter().for_each(|&(offset, length)| self.bad_index(offset, length, shape.element));
-        bad.is_empty().then_some(indices)
+        trusted.then_some(indices)
     }
 
     fn base64_indices(&mut self, shape: &Shape) -> Option<Vec<u32>> {
@@ -97,7 +107,8 @@ impl<R: BufRead> Cursor<R> {
                 self.findings.push(Code::BadIndex, shape.origin, || {
                     format!("{number} as integer {} of the base64 content of {element}", place + 1)
                 });
-                None
+                let zeros_only = integers.iter().all(|&n| i32::try_from(n).is_ok());
+                zeros_only.then_some(integers)
             }
         }
     }
@@ -168,7 +179,7 @@ fn words(text: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
     })
 }
 
-/// A point index: decimal, from 1.
+/// A point index: decimal; 0 is for the caller to refuse.
 fn index(word: &[u8]) -> Option<u32> {
     let mut number = 0_u64;
     for &byte in word {
@@ -181,7 +192,7 @@ fn index(word: &[u8]) -> Option<u32> {
             return None;
         }
     }
-    u32::try_from(number).ok().filter(|&n| n > 0)
+    u32::try_from(number).ok()
 }
 
 /// Base64 without blanks to little-endian integers.

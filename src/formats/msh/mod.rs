@@ -10,7 +10,6 @@ mod node_tags;
 mod outline;
 mod read22;
 mod read41;
-mod scanner;
 mod sink;
 mod source;
 mod write22;
@@ -21,8 +20,8 @@ mod tests;
 
 use std::io::{BufRead, Write};
 
+use super::scanner::Scanner;
 use draft::Draft;
-use scanner::Scanner;
 use sink::{ByteSink, Sink, TextSink};
 use source::{Bytes, Text};
 

@@ -2,8 +2,8 @@
 
 use std::io::{BufRead, Write};
 
-use super::scanner::Scanner;
 use crate::formats::error::{Fault, Flaw};
+use crate::formats::scanner::Scanner;
 use crate::mesh::PhysicalName;
 
 /// Reads a count and as many lines `dimension tag "name"`.

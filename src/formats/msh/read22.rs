@@ -6,9 +6,9 @@ use std::io::BufRead;
 
 use super::draft::{Draft, ElementType, empty_block};
 use super::read41::{dimension, periodic_pair};
-use super::scanner::Scanner;
 use super::source::{Record, Source, Text};
 use crate::formats::error::{Fault, Flaw};
+use crate::formats::scanner::Scanner;
 use crate::mesh::{Block, EntityKey, NodeId, Periodic};
 
 /// A positive `int` as node or element number.

@@ -2,8 +2,8 @@
 
 use std::io::BufRead;
 
-use super::scanner::Scanner;
 use crate::formats::error::{Fault, Flaw};
+use crate::formats::scanner::Scanner;
 
 /// How many numbers of each kind one record holds at least.
 #[derive(Clone, Copy, Default)]

@@ -1,4 +1,4 @@
-//! The bytes of an MSH file, taken by line, word or number, with the place kept for errors.
+//! The bytes of a mesh file, taken by line, word or number, with the place kept for errors.
 
 use std::io::BufRead;
 
@@ -102,8 +102,8 @@ impl<R: BufRead> Scanner<R> {
         }
     }
 
-    /// The next word, parsed.
-    pub(super) fn number<T: std::str::FromStr>(&mut self, what: &'static str) -> Result<T, Flaw> {
+    /// The next word: characters up to white space.
+    pub(super) fn word(&mut self, what: &'static str) -> Result<&str, Flaw> {
         self.word.clear();
         while let Some(byte) = self.peek()? {
             let space = byte.is_ascii_whitespace();
@@ -118,26 +118,81 @@ impl<R: BufRead> Scanner<R> {
         if self.word.is_empty() {
             return Err(self.flaw(Fault::Truncated(what)));
         }
-        match std::str::from_utf8(&self.word).ok().and_then(|text| text.parse().ok()) {
-            Some(value) => Ok(value),
-            None => {
-                let found: String = String::from_utf8_lossy(&self.word).chars().take(40).collect();
-                Err(self.flaw(Fault::Number { what, found }))
+        let place = self.place();
+        std::str::from_utf8(&self.word).map_err(|_| Flaw::new(place, Fault::NotUtf8(what)))
+    }
+
+    /// Whether a word follows; white space before it is passed over.
+    pub(super) fn more(&mut self) -> Result<bool, Flaw> {
+        while let Some(byte) = self.peek()? {
+            if !byte.is_ascii_whitespace() {
+                return Ok(true);
             }
+            self.step(byte);
         }
+        Ok(false)
+    }
+
+    /// The next word, parsed.
+    pub(super) fn number<T: std::str::FromStr>(&mut self, what: &'static str) -> Result<T, Flaw> {
+        if let Ok(value) = self.word(what)?.parse() {
+            return Ok(value);
+        }
+        let found: String = String::from_utf8_lossy(&self.word).chars().take(40).collect();
+        Err(self.flaw(Fault::Number { what, found }))
     }
 
     /// The next `N` bytes.
     pub(super) fn bytes<const N: usize>(&mut self, what: &'static str) -> Result<[u8; N], Flaw> {
         let mut bytes = [0; N];
-        match self.input.read_exact(&mut bytes) {
+        self.fill(&mut bytes, what)?;
+        Ok(bytes)
+    }
+
+    /// The next bytes, as many as there is room for.
+    pub(super) fn fill(&mut self, bytes: &mut [u8], what: &'static str) -> Result<(), Flaw> {
+        match self.input.read_exact(bytes) {
             Ok(()) => {
-                self.offset += N as u64;
-                Ok(bytes)
+                self.offset += bytes.len() as u64;
+                Ok(())
             }
             Err(e) if e.kind() == std::io::ErrorKind::UnexpectedEof => Err(self.flaw(Fault::Truncated(what))),
             Err(e) => Err(self.flaw(e.into())),
         }
+    }
+
+    /// Goes past what is left of the present line.
+    pub(super) fn rest_of_line(&mut self) -> Result<(), Flaw> {
+        while let Some(byte) = self.peek()? {
+            if byte == b'\n' {
+                break;
+            }
+            self.step(byte);
+        }
+        Ok(())
+    }
+
+    /// Goes past the next empty line.
+    pub(super) fn skip_paragraph(&mut self) -> Result<(), Flaw> {
+        let mut ends = 0;
+        while let Some(byte) = self.peek()? {
+            self.step(byte);
+            match byte {
+                b'\n' => ends += 1,
+                b' ' | b'\t' | b'\r' => {}
+                _ => ends = 0,
+            }
+            if ends == 2 {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether these characters follow, after white space; as far as the input is buffered.
+    pub(super) fn next_is(&mut self, text: &[u8]) -> Result<bool, Flaw> {
+        let buffer = self.input.fill_buf().map_err(|e| Flaw::new(Place::Byte(self.offset), e.into()))?;
+        Ok(buffer.trim_ascii_start().starts_with(text))
     }
 
     /// Goes past the end marker of a section whose content nobody wants.

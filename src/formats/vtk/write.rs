@@ -9,10 +9,10 @@ use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use super::field::{Field, Support, Values};
-use super::output::Unwritten;
 use crate::element::order::{FileOrder, pyramid_as_hex};
 use crate::element::{Cell, Order, type_code};
+use crate::formats::field::{Field, Support, Values};
+use crate::formats::output::Unwritten;
 use crate::mesh::{Block, Entity, EntityKey, Mesh};
 
 /// Writes a mesh and fields on it; with `volume_only` without the cells below the mesh's top dimension, which
@@ -20,7 +20,12 @@ use crate::mesh::{Block, Entity, EntityKey, Mesh};
 ///
 /// Besides the fields the cells carry `dimension`, `CellEntityIds` (the file's entity tag), and `patch` (the first
 /// physical tag of the entity, 0 where there is none).
-pub(super) fn write(out: &mut impl Write, mesh: &Mesh, fields: &[Field], volume_only: bool) -> Result<(), Unwritten> {
+pub(in crate::formats) fn write(
+    out: &mut impl Write,
+    mesh: &Mesh,
+    fields: &[Field],
+    volume_only: bool,
+) -> Result<(), Unwritten> {
     let grid = Grid::new(mesh, volume_only);
     grid.check(fields)?;
     let arrays = grid.arrays(fields);

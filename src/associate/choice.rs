@@ -1,0 +1,78 @@
+//! Which patches are curved, where the user chooses.
+
+use std::collections::BTreeSet;
+
+use super::{Boundary, Claims};
+use crate::mesh::{EntityKey, Mesh};
+
+/// Patches by name: a physical name, `surface 3`, or `3`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Choice {
+    /// All that are tied to the CAD.
+    #[default]
+    All,
+    /// Of those, these only.
+    Curve(Vec<String>),
+    /// Of those, all but these.
+    Straight(Vec<String>),
+}
+
+/// A name that no patch has.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no boundary patch is called {name:?}; there are: {known}")]
+pub struct UnknownPatch {
+    name: String,
+    known: String,
+}
+
+impl Choice {
+    /// The patches that are to stay straight.
+    ///
+    /// # Errors
+    /// [`UnknownPatch`].
+    pub fn straight(&self, mesh: &Mesh, boundary: &Boundary) -> Result<BTreeSet<EntityKey>, UnknownPatch> {
+        let all: BTreeSet<EntityKey> = boundary.faces.iter().map(|face| face.entity).collect();
+        let find = |names: &[String]| -> Result<BTreeSet<EntityKey>, UnknownPatch> {
+            let mut found = BTreeSet::new();
+            for name in names {
+                let called = |entity: &&EntityKey| {
+                    mesh.names_of(**entity).contains(name)
+                        || entity.to_string() == *name
+                        || entity.tag.to_string() == *name
+                };
+                let before = found.len();
+                found.extend(all.iter().filter(called));
+                if found.len() == before && !all.iter().any(|entity| called(&entity)) {
+                    let known: Vec<String> = all.iter().map(|&entity| mesh.label(entity)).collect();
+                    return Err(UnknownPatch { name: name.clone(), known: known.join(", ") });
+                }
+            }
+            Ok(found)
+        };
+        Ok(match self {
+            Choice::All => BTreeSet::new(),
+            Choice::Curve(names) => &all - &find(names)?,
+            Choice::Straight(names) => find(names)?,
+        })
+    }
+}
+
+impl Claims {
+    /// Strikes out what is said of the faces of these patches, and of edges that have no other faces.
+    pub fn leave_straight(&mut self, boundary: &Boundary, patches: &BTreeSet<EntityKey>) {
+        if patches.is_empty() {
+            return;
+        }
+        let stays = |face: usize| patches.contains(&boundary.faces[face].entity);
+        for sheet in &mut self.sheets {
+            sheet.items.retain(|&face| !stays(face));
+        }
+        self.sheets.retain(|sheet| !sheet.items.is_empty());
+        for string in &mut self.strings {
+            string.items.retain(|&ends| {
+                boundary.edge(ends).is_none_or(|edge| !boundary.edge_faces[edge].iter().all(|&face| stays(face)))
+            });
+        }
+        self.strings.retain(|string| !string.items.is_empty());
+    }
+}

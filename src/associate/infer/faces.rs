@@ -1,0 +1,144 @@
+//! One CAD face for each mesh face: candidates, sides, growth.
+
+use std::collections::{BTreeMap, VecDeque};
+
+use cad::{EdgeId, FaceId};
+
+use super::Doubt;
+use super::incidence::Incidence;
+use crate::associate::joint::normal_at;
+use crate::associate::{Boundary, Claimed, Joints, Side};
+use crate::mesh::{EntityKey, Mesh};
+
+/// A mesh face runs along a CAD face if the cosine between their normals is at least this.
+pub(super) const ALONG: f64 = 0.5;
+/// How far the middle of a mesh face may be from its CAD face; share of its longest edge.
+pub(super) const BULGE: f64 = 0.5;
+/// The volume is on one side of a CAD face if at least this share of the faces that tell is there.
+const ONE_SIDE: f64 = 0.9;
+
+/// A CAD face that a mesh face may lie on.
+#[derive(Clone, Copy, Debug)]
+struct Candidate {
+    face: FaceId,
+    /// Whether the mesh's outward normal is that of the CAD face; `None` where the CAD has no normal.
+    outward: Option<bool>,
+}
+
+/// For each mesh face its CAD face, or why it has none.
+pub(super) fn decide(
+    boundary: &Boundary,
+    joints: &Joints<'_>,
+    incidence: &Incidence,
+    along: &[Vec<EdgeId>],
+    sides: &[Side],
+) -> Vec<Result<FaceId, Doubt>> {
+    let mut candidates: Vec<Vec<Candidate>> =
+        (0..boundary.faces.len()).map(|f| candidates(f, boundary, joints, incidence, &sides[f])).collect();
+    strike_wrong_sides(&mut candidates);
+    grow(boundary, joints, along, &mut candidates);
+    let outcome = |f: usize, left: &Vec<Candidate>| match left[..] {
+        [only] => Ok(only.face),
+        [] => {
+            let lost = boundary.corners[f].iter().all(|n| incidence.faces[n.index()].is_empty());
+            Err(if lost { Doubt::OffCad } else { Doubt::NoCommonFace })
+        }
+        _ => Err(Doubt::SeveralFaces(left.iter().map(|candidate| candidate.face).collect())),
+    };
+    candidates.iter().enumerate().map(|(f, left)| outcome(f, left)).collect()
+}
+
+/// CAD faces that hold all corners, run along the face, and that its middle is near to.
+fn candidates(
+    face: usize,
+    boundary: &Boundary,
+    joints: &Joints<'_>,
+    incidence: &Incidence,
+    side: &Side,
+) -> Vec<Candidate> {
+    let corners = &boundary.corners[face];
+    let at = |q: usize| &incidence.faces[corners[q].index()];
+    let common = at(0).iter().filter(|id| (1..corners.len()).all(|q| at(q).contains(id)));
+    let fits = |&id: &FaceId| {
+        let group = joints.face(id)?;
+        if group.closest(side.middle, None).distance > BULGE * side.size {
+            return None;
+        }
+        let cosine = normal_at(group, side.middle).map(|normal| normal.dot(side.normal));
+        let runs_along = cosine.is_none_or(|cosine| cosine.abs() >= ALONG);
+        runs_along.then(|| Candidate { face: id, outward: cosine.map(|cosine| cosine > 0.0) })
+    };
+    common.filter_map(fits).collect()
+}
+
+/// Strikes out candidates that have the volume on the other side, by what faces without a choice tell.
+fn strike_wrong_sides(candidates: &mut [Vec<Candidate>]) {
+    let mut told: BTreeMap<FaceId, [usize; 2]> = BTreeMap::new();
+    for own in candidates.iter() {
+        if let [Candidate { face, outward: Some(outward) }] = own[..] {
+            told.entry(face).or_default()[usize::from(outward)] += 1;
+        }
+    }
+    let volume_outside = |face: FaceId| {
+        let [against, with] = told.get(&face)?;
+        let share = *with as f64 / (against + with) as f64;
+        (share >= ONE_SIDE).then_some(true).or((share <= 1.0 - ONE_SIDE).then_some(false))
+    };
+    let wrong = |candidate: &Candidate| {
+        candidate.outward.zip(volume_outside(candidate.face)).is_some_and(|(own, whole)| own != whole)
+    };
+    for own in candidates.iter_mut().filter(|own| own.len() > 1) {
+        if !own.iter().all(wrong) {
+            own.retain(|candidate| !wrong(candidate));
+        }
+    }
+}
+
+/// Lets decided faces tell their neighbours, until nothing changes.
+fn grow(boundary: &Boundary, joints: &Joints<'_>, along: &[Vec<EdgeId>], candidates: &mut [Vec<Candidate>]) {
+    let mut edges_of: Vec<Vec<usize>> = vec![Vec::new(); boundary.faces.len()];
+    for (edge, faces) in boundary.edge_faces.iter().enumerate() {
+        faces.iter().for_each(|&face| edges_of[face].push(edge));
+    }
+    let mut decided: VecDeque<usize> = (0..candidates.len()).filter(|&f| candidates[f].len() == 1).collect();
+    while let Some(face) = decided.pop_front() {
+        let [Candidate { face: own, .. }] = candidates[face][..] else { continue };
+        for &edge in &edges_of[face] {
+            // Where three faces meet, there is no "other side".
+            let [a, b] = boundary.edge_faces[edge][..] else { continue };
+            let other = if a == face { b } else { a };
+            if candidates[other].len() < 2 {
+                continue;
+            }
+            let bounds = |&&id: &&EdgeId| joints.faces_of(id).contains(&own);
+            let kept: Vec<Candidate> = match along[edge].iter().find(bounds) {
+                None => candidates[other].iter().filter(|c| c.face == own).copied().collect(),
+                // A seam has its one face on both sides.
+                Some(&id) if joints.faces_of(id).len() == 1 && joints.is_seam(id) => continue,
+                Some(_) => candidates[other].iter().filter(|c| c.face != own).copied().collect(),
+            };
+            if !kept.is_empty() && kept.len() < candidates[other].len() {
+                candidates[other] = kept;
+                if candidates[other].len() == 1 {
+                    decided.push_back(other);
+                }
+            }
+        }
+    }
+}
+
+/// The claims of mesh faces, patch by patch.
+pub(super) fn sheets(mesh: &Mesh, boundary: &Boundary, hosts: &[Option<Vec<FaceId>>]) -> Vec<Claimed<usize>> {
+    let mut sheets: BTreeMap<(EntityKey, &[FaceId]), Vec<usize>> = BTreeMap::new();
+    for (face, host) in hosts.iter().enumerate() {
+        if let Some(host) = host {
+            sheets.entry((boundary.faces[face].entity, host)).or_default().push(face);
+        }
+    }
+    let claim = |((entity, host), items): ((EntityKey, &[FaceId]), Vec<usize>)| Claimed {
+        label: mesh.label(entity),
+        items,
+        entities: host.iter().map(|&id| id.into()).collect(),
+    };
+    sheets.into_iter().map(claim).collect()
+}

@@ -1,0 +1,117 @@
+//! Which CAD faces, edges and vertices hold each boundary node, and which CAD edge each mesh edge runs along.
+
+use std::collections::BTreeMap;
+
+use cad::{Aabb, BoxTree, EdgeId, FaceId, Group, Model, VertexId};
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::Tolerance;
+use crate::associate::{Boundary, Joints};
+use crate::element::Order;
+use crate::mesh::{Mesh, NodeId};
+
+/// The middle of a mesh edge may be this far from the CAD edge that it runs along; share of its length (an arc of 180 degrees has 0.5).
+const BULGE: f64 = 0.5;
+
+/// The CAD entities at every node of the mesh; nothing at nodes inside the volume.
+#[derive(Debug)]
+pub struct Incidence {
+    /// CAD faces within tolerance, ascending.
+    pub faces: Vec<Vec<FaceId>>,
+    /// CAD edges within tolerance, doubled ones as one, with the parameter of the foot.
+    edges: Vec<Vec<(EdgeId, f64)>>,
+    /// CAD vertices within tolerance, ascending: unsewn faces have each their own.
+    pub vertices: Vec<Vec<VertexId>>,
+}
+
+impl Incidence {
+    /// What holds the nodes of the boundary.
+    #[must_use]
+    pub fn new(
+        mesh: &Mesh,
+        boundary: &Boundary,
+        model: &Model,
+        joints: &Joints<'_>,
+        tolerance: &Tolerance,
+    ) -> Incidence {
+        let slack = slacks(mesh, boundary, tolerance);
+        let single = |&(id, _): &(EdgeId, &[FaceId])| Group::of_edges(model, &[id]).ok().map(|group| (id, group));
+        let curves: Vec<(EdgeId, Group)> = joints.edges().collect::<Vec<_>>().iter().filter_map(single).collect();
+        let surfaces: Vec<(FaceId, &Group)> =
+            model.faces().iter().filter_map(|face| Some((face.id, joints.face(face.id)?))).collect();
+        let surface_tree = BoxTree::new(&surfaces.iter().map(|(_, group)| group.bounds()).collect::<Vec<_>>());
+        let curve_tree = BoxTree::new(&curves.iter().map(|(_, group)| group.bounds()).collect::<Vec<_>>());
+        let near = |x: DVec3, slack: f64| Aabb::of_points([x]).grown(slack);
+        let at = |n: usize| {
+            let (x, Some(slack)) = (mesh.points[n], slack[n]) else { return Default::default() };
+            let holds = |&i: &usize| surfaces[i].1.closest(x, None).distance <= slack;
+            let faces = surface_tree.overlapping(near(x, slack)).into_iter().filter(holds).map(|i| surfaces[i].0);
+            let edges = curve_tree.overlapping(near(x, slack)).into_iter().filter_map(|i| {
+                let foot = curves[i].1.closest(x, None);
+                (foot.distance <= slack).then_some((curves[i].0, foot.parameters[0]))
+            });
+            (faces.collect(), edges.collect())
+        };
+        type AtNode = (Vec<FaceId>, Vec<(EdgeId, f64)>);
+        let (faces, edges) =
+            (0..mesh.points.len()).into_par_iter().map(at).collect::<Vec<AtNode>>().into_iter().unzip();
+        let vertex = |n: usize| {
+            let near =
+                |vertex: &&cad::Vertex| slack[n].is_some_and(|slack| vertex.point.distance(mesh.points[n]) <= slack);
+            model.vertices().iter().filter(near).map(|vertex| vertex.id).collect()
+        };
+        let vertices = (0..mesh.points.len()).into_par_iter().map(vertex).collect();
+        Incidence { faces, edges, vertices }
+    }
+
+    /// For every boundary edge the CAD edges that it runs along: both ends lie on the CAD edge with no other node between them, and the foot of
+    /// the middle lies between theirs.
+    #[must_use]
+    pub fn along(&self, mesh: &Mesh, boundary: &Boundary, model: &Model) -> Vec<Vec<EdgeId>> {
+        let mut rows: BTreeMap<EdgeId, Vec<(f64, NodeId)>> = BTreeMap::new();
+        for (n, edges) in self.edges.iter().enumerate() {
+            let Ok(node) = NodeId::new(n) else { continue };
+            edges.iter().for_each(|&(edge, t)| rows.entry(edge).or_default().push((t, node)));
+        }
+        let mut along = vec![Vec::new(); boundary.edges.len()];
+        for (id, mut row) in rows {
+            let (Some(edge), Ok(group)) = (model.edge(id), Group::of_edges(model, &[id])) else { continue };
+            row.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            let closed = edge.ends[0] == edge.ends[1];
+            let steps = if closed { row.len() } else { row.len().saturating_sub(1) };
+            for step in 0..steps {
+                let [(from, a), (to, b)] = [row[step], row[(step + 1) % row.len()]];
+                let Some(found) = boundary.edge([a, b]) else { continue };
+                let [a, b] = [a, b].map(|n| mesh.points[n.index()]);
+                let foot = group.closest(0.5 * (a + b), None);
+                let t = foot.parameters[0];
+                let between = if from < to { (from..=to).contains(&t) } else { t >= from || t <= to };
+                if between && foot.distance <= BULGE * a.distance(b) && !along[found].contains(&id) {
+                    along[found].push(id);
+                }
+            }
+        }
+        along
+    }
+}
+
+/// How far each boundary node may be from what holds it; `None` inside the volume.
+fn slacks(mesh: &Mesh, boundary: &Boundary, tolerance: &Tolerance) -> Vec<Option<f64>> {
+    let mut shortest = vec![f64::INFINITY; mesh.points.len()];
+    for (_, block) in mesh.blocks.iter().enumerate().filter(|(_, block)| block.cell.dimension() >= 2) {
+        for nodes in block.elements(Order::LINEAR) {
+            for &[a, b] in block.cell.edges() {
+                let [a, b] = [a, b].map(|q| nodes[usize::from(q)].index());
+                let length = mesh.points[a].distance(mesh.points[b]);
+                shortest[a] = shortest[a].min(length);
+                shortest[b] = shortest[b].min(length);
+            }
+        }
+    }
+    let mut slacks = vec![None; mesh.points.len()];
+    for node in boundary.corners.iter().flatten() {
+        slacks[node.index()] = Some(tolerance.at(shortest[node.index()]));
+    }
+    slacks
+}

@@ -1,0 +1,113 @@
+//! The association where nobody tells it: by geometry, and by connectivity where geometry leaves a choice.
+//!
+//! 1. **Incidence.** A node lies on every CAD face, edge and vertex within tolerance ([`Tolerance`]): well below the mesh's own size, so that the
+//!    first layer of nodes over a wall is not taken for the wall.
+//! 2. **Candidates.** A mesh face may lie on the CAD faces that hold all its corners, that run along it, and that its middle is near to.
+//! 3. **Sides.** Mesh faces with one candidate tell on which side of each CAD face the volume is. Candidates with the volume on the other side are
+//!    struck out: at a sharp edge both sides of a thin plate hold all corners of some faces.
+//! 4. **Growth.** A mesh face that still has a choice goes with a neighbour across a mesh edge that runs along no CAD edge, and not with one across
+//!    an edge of the neighbour's CAD face. Nearness never decides.
+//! 5. **Quilts.** Faces whose corners no single CAD face holds, but several that go on smoothly in one another do, lie on these together.
+//! 6. **Edges and corners.** A mesh edge between faces on different CAD faces goes to the CAD edge of theirs that it runs along; a node at the vertex of such
+//!    an edge to that vertex.
+//!
+//! What is left is undecided: it is listed, and tied to nothing.
+
+mod edges;
+mod faces;
+mod incidence;
+mod quilts;
+
+use cad::{Aabb, FaceId, Model};
+
+use super::{Boundary, Claims, Joints, sides};
+use crate::mesh::Mesh;
+pub use incidence::Incidence;
+
+/// Default tolerance, as a share of the mesh's box.
+pub const ON_CAD: f64 = 1e-5;
+/// The tolerance where none is asked for stays below this share of the shortest mesh edge at a node.
+const OF_EDGE: f64 = 0.1;
+
+/// How far a node may be from a CAD entity that holds it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    distance: f64,
+    local: bool,
+}
+
+impl Tolerance {
+    /// [`ON_CAD`] of the mesh's box, and at most a tenth of the shortest mesh edge at the node.
+    #[must_use]
+    pub fn of(mesh: &Mesh) -> Tolerance {
+        let box_size = Aabb::of_points(mesh.points.iter().copied()).diagonal();
+        Tolerance { distance: ON_CAD * box_size, local: true }
+    }
+
+    /// This distance at all nodes.
+    #[must_use]
+    pub fn fixed(distance: f64) -> Tolerance {
+        Tolerance { distance, local: false }
+    }
+
+    /// At a node whose shortest edge has this length.
+    fn at(&self, shortest: f64) -> f64 {
+        if self.local { self.distance.min(OF_EDGE * shortest) } else { self.distance }
+    }
+}
+
+/// Why a face or edge is tied to nothing.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Doubt {
+    /// No CAD face holds any of its corners: the patch may not be part of the CAD.
+    #[error("no CAD face holds its points")]
+    OffCad,
+    /// Each corner is on the CAD, but on no common face.
+    #[error("its points are on the CAD, but no CAD face, nor faces that meet smoothly, hold them all and run along it")]
+    NoCommonFace,
+    /// Several CAD faces hold it, and its neighbours do not tell which.
+    #[error("it may lie on {}", list(.0))]
+    SeveralFaces(Vec<FaceId>),
+    /// It lies between faces on different CAD faces, but along none of their edges.
+    #[error("it lies between {} and {}, but along no CAD edge of theirs", .0[0], .0[1])]
+    NoEdge([FaceId; 2]),
+}
+
+fn list(faces: &[FaceId]) -> String {
+    faces.iter().map(ToString::to_string).collect::<Vec<_>>().join(" or ")
+}
+
+/// What was found.
+#[derive(Debug)]
+pub struct Inference {
+    /// What is decided.
+    pub claims: Claims,
+    /// Boundary faces that are not, by index, with the reason.
+    pub faces: Vec<(usize, Doubt)>,
+    /// Boundary edges that are not.
+    pub edges: Vec<(usize, Doubt)>,
+}
+
+impl Inference {
+    /// Faces whose points are on the CAD and that are undecided all the same.
+    #[must_use]
+    pub fn undecided(&self) -> usize {
+        self.faces.iter().filter(|(_, doubt)| *doubt != Doubt::OffCad).count()
+    }
+}
+
+/// Ties the boundary to the CAD by geometry.
+#[must_use]
+pub fn infer(mesh: &Mesh, boundary: &Boundary, model: &Model, tolerance: &Tolerance) -> Inference {
+    let joints = Joints::new(model);
+    let incidence = Incidence::new(mesh, boundary, model, &joints, tolerance);
+    let along = incidence.along(mesh, boundary, model);
+    let sides = sides(mesh, boundary);
+    let decided = faces::decide(boundary, &joints, &incidence, &along, &sides);
+    let (hosts, doubts) = quilts::join(boundary, model, &joints, &incidence, &sides, decided);
+    let mut claims = Claims { trusted: true, sheets: faces::sheets(mesh, boundary, &hosts), ..Claims::default() };
+    let strings = edges::strings(boundary, model, &joints, &along, &hosts);
+    claims.points = edges::points(boundary, model, &incidence, &strings);
+    claims.strings = strings.claims;
+    Inference { claims, faces: doubts, edges: strings.doubts }
+}

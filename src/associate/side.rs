@@ -1,0 +1,52 @@
+//! Which side of a boundary face the volume is on.
+
+use glam::DVec3;
+
+use super::Boundary;
+use crate::element::Order;
+use crate::mesh::{Mesh, NodeId};
+
+/// A boundary face's place in space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Side {
+    /// Mean of its corners.
+    pub middle: DVec3,
+    /// Unit normal, out of the volume; by the order of the corners where no volume element has the face. Zero for a face without area.
+    pub normal: DVec3,
+    /// Longest edge.
+    pub size: f64,
+    /// Volume elements that have the face: 1 on the boundary, 2 inside the volume, 0 in a mesh of faces alone.
+    pub cells: usize,
+}
+
+/// The sides of all boundary faces.
+#[must_use]
+pub fn sides(mesh: &Mesh, boundary: &Boundary) -> Vec<Side> {
+    let mut sides: Vec<Side> = boundary.corners.iter().map(|corners| by_corners(mesh, corners)).collect();
+    let mut corners: Vec<NodeId> = Vec::new();
+    for (_, block) in mesh.blocks_of(3) {
+        for nodes in block.elements(Order::LINEAR) {
+            for face in block.cell.faces() {
+                corners.clear();
+                corners.extend(face.corners.iter().map(|&c| nodes[usize::from(c)]));
+                let Some(index) = boundary.face(&corners) else { continue };
+                let side = &mut sides[index];
+                let center = mesh.points_of(nodes).sum::<DVec3>() / nodes.len() as f64;
+                if side.cells == 0 && side.normal.dot(side.middle - center) < 0.0 {
+                    side.normal = -side.normal;
+                }
+                side.cells += 1;
+            }
+        }
+    }
+    sides
+}
+
+fn by_corners(mesh: &Mesh, corners: &[NodeId]) -> Side {
+    let points: Vec<DVec3> = mesh.points_of(corners).collect();
+    let count = points.len();
+    // The sum over the loop is twice the area vector of a triangle, and that of the mean plane of a quadrilateral.
+    let area: DVec3 = (0..count).map(|q| points[q].cross(points[(q + 1) % count])).sum();
+    let size = (0..count).map(|q| points[q].distance(points[(q + 1) % count])).fold(0.0, f64::max);
+    Side { middle: points.iter().sum::<DVec3>() / count as f64, normal: area.normalize_or_zero(), size, cells: 0 }
+}

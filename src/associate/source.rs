@@ -1,0 +1,101 @@
+//! Where the association of a mesh comes from: a linkage file, its entity tags, or its geometry.
+
+use std::path::Path;
+
+use cad::Model;
+
+use super::{
+    AssociateError, Association, Boundary, Claims, Inference, LinkageError, Tolerance, associate, infer, read_linkage,
+};
+use crate::mesh::Mesh;
+
+/// An inference is used where at least this share of the faces of every patch that it ties is decided.
+const DECIDED: f64 = 0.9;
+
+/// Claims, held against the CAD, and where they come from.
+#[derive(Debug)]
+pub struct Tied {
+    /// The claims.
+    pub claims: Claims,
+    /// The association that they make.
+    pub association: Association,
+    /// What was inferred, where neither a linkage file nor tags told.
+    pub inference: Option<Inference>,
+    /// Where they come from, for people.
+    pub source: String,
+}
+
+/// Why a mesh could not be tied.
+#[derive(Debug, thiserror::Error)]
+pub enum TieError {
+    /// The linkage file cannot be used.
+    #[error(transparent)]
+    Linkage(#[from] LinkageError),
+    /// Mesh and CAD do not belong together.
+    #[error(transparent)]
+    Associate(#[from] AssociateError),
+}
+
+/// Ties a mesh to its CAD: by the linkage file where there is one, else by entity tags where they are this CAD's, else by geometry.
+///
+/// `choose` may strike out claims before they are held against the CAD. `max_offset` is that of [`associate`].
+///
+/// # Errors
+/// [`TieError`]; where tags do not hold and geometry does not tell either, what is wrong with the tags.
+pub fn tie(
+    linkage: Option<&Path>,
+    mesh: &Mesh,
+    boundary: &Boundary,
+    model: &Model,
+    max_offset: f64,
+    choose: &dyn Fn(&mut Claims),
+) -> Result<Tied, TieError> {
+    let held = |mut claims: Claims, inference: Option<Inference>, source: String| {
+        choose(&mut claims);
+        let mut association = associate(mesh, boundary, model, &claims, max_offset)?;
+        association.notes.extend(model.losses());
+        association.notes.append(&mut claims.notes);
+        Ok::<_, AssociateError>(Tied { claims, association, inference, source })
+    };
+    if let Some(path) = linkage {
+        let claims = read_linkage(path, mesh, boundary, model)?;
+        let trusted = claims.trusted;
+        let mut tied = held(claims, None, format!("linkage file {}", path.display()))?;
+        if !trusted {
+            let note = "names another CAD file; its numbers were held against this one";
+            tied.association.notes.push(format!("{} {note}", path.display()));
+        }
+        return Ok(tied);
+    }
+    let by_tags = held(Claims::by_tags(mesh, boundary, model), None, "the mesh's entity tags".into());
+    let refused = match by_tags {
+        Err(error) if error.tags_are_of_no_use() => error,
+        other => return Ok(other?),
+    };
+    let inference = infer(mesh, boundary, model, &Tolerance::of(mesh));
+    if !is_usable(boundary, &inference) {
+        return Err(refused.into());
+    }
+    let mut tied = held(inference.claims.clone(), None, "geometry".into())?;
+    let [faces, edges] = [inference.undecided(), inference.edges.len()];
+    tied.association.notes.push(format!(
+        "the mesh's entity tags are not this CAD's numbers; what lies on what was found by geometry, {faces} faces and {edges} edges \
+         undecided (--dry-run shows it)"
+    ));
+    tied.inference = Some(inference);
+    Ok(tied)
+}
+
+/// Whether something was decided, and of every patch nearly all or nothing.
+fn is_usable(boundary: &Boundary, inference: &Inference) -> bool {
+    let mut counts: std::collections::BTreeMap<_, [usize; 2]> = std::collections::BTreeMap::new();
+    for face in &boundary.faces {
+        counts.entry(face.entity).or_default()[0] += 1;
+    }
+    for (face, _) in &inference.faces {
+        counts.entry(boundary.faces[*face].entity).or_default()[1] += 1;
+    }
+    let tied = |[all, open]: &[usize; 2]| *all - *open;
+    counts.values().any(|count| tied(count) > 0)
+        && counts.values().all(|count| tied(count) == 0 || tied(count) as f64 >= DECIDED * count[0] as f64)
+}

@@ -1,0 +1,33 @@
+//! `sagitta convert`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::form::Form;
+use super::{DONE, Failure, print};
+use crate::formats;
+
+/// Options of `sagitta convert`.
+#[derive(Args)]
+pub(super) struct Options {
+    /// A mesh of order 1 to 4: MSH, CGNS, UGRID, SU2, VTU, legacy VTK or PLOT3D
+    mesh: PathBuf,
+    /// The mesh to write: .msh or .cgns for solvers, .vtu for pictures
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    #[command(flatten)]
+    form: Form,
+}
+
+/// Reads a mesh and writes it in another format.
+pub(super) fn run(options: &Options) -> Result<u8, Failure> {
+    formats::check_output(&options.output)?;
+    let mesh = formats::read(&options.mesh)?;
+    formats::write(&options.output, &mesh, &options.form.with(&[]))?;
+    for note in &mesh.notes {
+        print(&format!("note: {note}"))?;
+    }
+    print(&format!("written: {}", options.output.display()))?;
+    Ok(DONE)
+}

@@ -1,0 +1,151 @@
+//! `sagitta project`.
+
+use std::fs::File;
+use std::io::BufReader;
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use cad::{Aabb, EntityId, Foot, Group, Model, ReadOptions};
+use clap::Args;
+use glam::DVec3;
+
+use super::curve::positive;
+use super::progress::{INTERVAL, Teller};
+use super::{DONE, Failure, NOT_CERTIFIED, points, print, write_json};
+use crate::formats;
+use crate::report::{CadReport, FeetReport};
+
+/// Points that are projected between two looks at the clock.
+const CHUNK: usize = 1 << 14;
+
+/// Options of `sagitta project`.
+#[derive(Args)]
+pub(super) struct Options {
+    /// The CAD: STEP, IGES or BREP
+    cad: PathBuf,
+    /// CSV file with columns x, y, z; `-` for stdin
+    points: PathBuf,
+    /// The CAD entities to project on, as `sagitta groups` lists them [default: all faces and free edges]
+    #[arg(long, value_name = "REF,...")]
+    group: Vec<String>,
+    /// CSV file for the feet; `-` for stdout
+    #[arg(short, long, value_name = "FEET.csv", default_value = "-")]
+    output: PathBuf,
+    /// Write the counts as JSON too
+    #[arg(long, value_name = "R.json")]
+    report: Option<PathBuf>,
+    /// Multiply the CAD by this factor
+    #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = positive)]
+    cad_scale: f64,
+    /// Threads to use [default: all cores]
+    #[arg(long, value_name = "N")]
+    threads: Option<NonZeroUsize>,
+    /// Seconds after which reading the CAD is given up
+    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = positive)]
+    cad_timeout: f64,
+    /// No progress on stderr
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// Projects points on CAD entities, writes their feet, and tells how it went: on stdout, or on stderr where the feet go to stdout.
+pub(super) fn run(options: &Options) -> Result<u8, Failure> {
+    let streamed = options.output == Path::new("-");
+    let mut files = (!streamed).then_some(&options.output).into_iter().chain(&options.report);
+    files.try_for_each(|path| formats::check_folder(path))?;
+    if let Some(threads) = options.threads {
+        rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global()?;
+    }
+    let teller = Teller::new(options.quiet);
+    let outcome = project(options, &teller);
+    teller.finish();
+    let (feet, report) = outcome?;
+    let mut text = Vec::new();
+    points::write(&mut text, &feet)?;
+    if streamed {
+        print(std::str::from_utf8(&text)?.trim_end())?;
+    } else {
+        formats::write_bytes(&options.output, &text)?;
+    }
+    if let Some(path) = &options.report {
+        write_json(path, &report)?;
+    }
+    match (streamed, options.quiet) {
+        (false, _) => print(&format!("{report}\nwritten: {}", options.output.display()))?,
+        (true, false) => eprintln!("{report}"),
+        (true, true) => {}
+    }
+    Ok(if report.unproven == 0 { DONE } else { NOT_CERTIFIED })
+}
+
+fn project(options: &Options, teller: &Teller) -> Result<(Vec<Foot>, FeetReport), Failure> {
+    teller.say("reading the points".to_owned());
+    let xs = read_points(&options.points)?;
+    teller.say(format!("{} points; reading the CAD", xs.len()));
+    let timeout = Duration::from_secs_f64(options.cad_timeout);
+    let reading = ReadOptions { timeout, scale: options.cad_scale, ..ReadOptions::default() };
+    let model = Model::read(&options.cad, &reading)?;
+    let references: Vec<String> =
+        options.group.iter().flat_map(|list| points::split(list)).map(str::to_owned).collect();
+    let entities = entities(&model, &references)?;
+    let group = Group::of(&model, &entities).map_err(|error| format!("{}: {error}", options.cad.display()))?;
+    let start = Instant::now();
+    let feet = closest(&group, &xs, teller);
+    let seconds = start.elapsed().as_secs_f64();
+    let cad = CadReport::new(&model, options.cad_scale);
+    let mut report = FeetReport::new(cad, &references, entities.len(), &feet, seconds);
+    report.notes.extend(model.losses());
+    report.notes.extend(unit_trap(&xs, &group, report.mean_distance));
+    Ok((feet, report))
+}
+
+fn read_points(path: &Path) -> Result<Vec<DVec3>, Failure> {
+    let (name, read) = if path == Path::new("-") {
+        ("standard input".to_owned(), points::read(std::io::stdin().lock()))
+    } else {
+        let name = path.display().to_string();
+        let file = File::open(path).map_err(|error| format!("{name}: cannot be read: {error}"))?;
+        (name, points::read(BufReader::new(file)))
+    };
+    read.map_err(|flaw| format!("{name}, {flaw}").into())
+}
+
+fn entities(model: &Model, references: &[String]) -> Result<Vec<EntityId>, cad::ReferenceError> {
+    if references.is_empty() {
+        let free = model.edges().iter().filter(|edge| edge.faces.is_empty() && !edge.degenerate);
+        return Ok(model.faces().iter().map(|face| face.id.into()).chain(free.map(|edge| edge.id.into())).collect());
+    }
+    let mut all = Vec::new();
+    for reference in references {
+        all.extend(model.resolve(reference)?);
+    }
+    all.sort_unstable();
+    all.dedup();
+    Ok(all)
+}
+
+/// The feet, chunk by chunk, so that there is something to tell.
+fn closest(group: &Group, xs: &[DVec3], teller: &Teller) -> Vec<Foot> {
+    let mut feet = Vec::with_capacity(xs.len());
+    let (start, mut last) = (Instant::now(), Instant::now());
+    teller.say(format!("projecting {} points", xs.len()));
+    for chunk in xs.chunks(CHUNK) {
+        feet.extend(group.closest_batch(chunk, &[]));
+        if last.elapsed() >= INTERVAL {
+            last = Instant::now();
+            let left = start.elapsed().as_secs_f64() / feet.len() as f64 * (xs.len() - feet.len()) as f64;
+            teller.say(format!("{} of {} points projected, {left:.0} s left", feet.len(), xs.len()));
+        }
+    }
+    feet
+}
+
+/// What to say where points and CAD seem to be in different units: the boxes differ by a factor between units, and the points are far off.
+fn unit_trap(xs: &[DVec3], group: &Group, mean_distance: f64) -> Option<String> {
+    let (ours, theirs) = (Aabb::of_points(xs.iter().copied()).diagonal(), group.bounds().diagonal());
+    let factor = cad::unit_factor(ours, theirs).filter(|_| mean_distance > 0.1 * ours.min(theirs))?;
+    Some(format!(
+        "the points are {ours:.6} across, the CAD {theirs:.6}: if the CAD is in another unit, give --cad-scale {factor}"
+    ))
+}

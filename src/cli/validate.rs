@@ -1,0 +1,47 @@
+//! `sagitta validate`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::curve::positive;
+use super::{DONE, FINDINGS, Failure, print};
+use crate::validate::{self, Job};
+
+/// Options of `sagitta validate`.
+#[derive(Args)]
+pub(super) struct Options {
+    /// The MeshLink file
+    linkage: PathBuf,
+    /// The linear mesh that it speaks of
+    #[arg(long, value_name = "FILE")]
+    mesh: Option<PathBuf>,
+    /// The CAD that it speaks of: STEP, IGES or BREP
+    #[arg(long, value_name = "FILE")]
+    cad: Option<PathBuf>,
+    /// How far a linked point may be from its CAD entity [default: 1e-5 of the mesh's box]
+    #[arg(long, value_name = "T", value_parser = positive)]
+    tolerance: Option<f64>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    /// Notes count as findings too
+    #[arg(long)]
+    strict: bool,
+}
+
+/// Validates a linkage file and tells what was found.
+pub(super) fn run(options: &Options) -> Result<u8, Failure> {
+    let validation = validate::validate(&Job {
+        linkage: options.linkage.clone(),
+        mesh: options.mesh.clone(),
+        cad: options.cad.clone(),
+        tolerance: options.tolerance,
+    })?;
+    if options.json {
+        print(&serde_json::to_string_pretty(&validation)?)?;
+    } else {
+        print(&validation.to_string())?;
+    }
+    Ok(if validation.is_clean(options.strict) { DONE } else { FINDINGS })
+}

@@ -1,0 +1,188 @@
+//! A mesh being put together from a format that has points, cells and named boundary patches.
+
+use std::collections::HashSet;
+
+use glam::DVec3;
+use rustc_hash::FxHashMap;
+
+use super::error::Fault;
+use super::turned;
+use crate::element::{Cell, Order};
+use crate::mesh::{Block, Entity, EntityKey, Mesh, NodeId, PhysicalName};
+
+/// The group of the volume's elements where a file does not name them; the name that PyFR asks for.
+const VOLUME_NAME: &str = "fluid";
+
+/// What has been read so far.
+pub(super) struct Assembly {
+    pub(super) mesh: Mesh,
+    order: Option<Order>,
+    blocks: FxHashMap<(Cell, EntityKey), usize>,
+    /// The block that was asked for last.
+    last: Option<((Cell, EntityKey), usize)>,
+    /// The tag of the next element that has no number of its own.
+    next_tag: u64,
+}
+
+impl Assembly {
+    /// A mesh of these points, numbered from 1, and no elements.
+    ///
+    /// # Errors
+    /// [`Fault::NotFinite`]; [`Fault::TooMany`].
+    pub(super) fn new(points: Vec<DVec3>) -> Result<Assembly, Fault> {
+        NodeId::new(points.len())?;
+        if let Some(n) = points.iter().position(|x| !x.is_finite()) {
+            return Err(Fault::NotFinite(n as u64 + 1));
+        }
+        let mesh = Mesh {
+            node_tags: (1..=points.len() as u64).collect(),
+            node_entities: vec![None; points.len()],
+            points,
+            ..Mesh::default()
+        };
+        Ok(Assembly { mesh, order: None, blocks: FxHashMap::default(), last: None, next_tag: 1 })
+    }
+
+    /// Fixes the order of the mesh, or compares with it.
+    ///
+    /// # Errors
+    /// [`Fault::MixedOrders`].
+    pub(super) fn set_order(&mut self, cell: Cell, order: Order) -> Result<(), Fault> {
+        if cell == Cell::Point {
+            return Ok(());
+        }
+        let mesh = *self.order.get_or_insert(order);
+        self.mesh.order = mesh;
+        if mesh == order { Ok(()) } else { Err(Fault::MixedOrders { order: mesh, here: order }) }
+    }
+
+    /// The block of a kind of cell on an entity.
+    pub(super) fn block(&mut self, cell: Cell, entity: EntityKey) -> &mut Block {
+        let key = (cell, entity);
+        let blocks = &mut self.mesh.blocks;
+        let place = match self.last {
+            Some((known, place)) if known == key => place,
+            _ => *self.blocks.entry(key).or_insert_with(|| {
+                blocks.push(Block { cell, entity, physical_tags: Vec::new(), tags: Vec::new(), nodes: Vec::new() });
+                blocks.len() - 1
+            }),
+        };
+        self.last = Some((key, place));
+        &mut blocks[place]
+    }
+
+    /// Adds an element under the next free number.
+    pub(super) fn push(&mut self, cell: Cell, entity: EntityKey, nodes: &[NodeId]) {
+        let tag = self.next_tag;
+        self.push_tagged(cell, entity, tag, nodes);
+    }
+
+    /// Adds an element under its own number.
+    pub(super) fn push_tagged(&mut self, cell: Cell, entity: EntityKey, tag: u64, nodes: &[NodeId]) {
+        self.next_tag = self.next_tag.max(tag.saturating_add(1));
+        let block = self.block(cell, entity);
+        block.tags.push(tag);
+        block.nodes.extend_from_slice(nodes);
+    }
+
+    /// Takes elements out, given by block and place.
+    pub(super) fn withdraw(&mut self, elements: &HashSet<(usize, usize)>) {
+        let order = self.mesh.order;
+        for (place, block) in self.mesh.blocks.iter_mut().enumerate() {
+            if !elements.iter().any(|&(b, _)| b == place) {
+                continue;
+            }
+            let kept: Vec<usize> = (0..block.tags.len()).filter(|&n| !elements.contains(&(place, n))).collect();
+            let stride = block.stride(order);
+            block.nodes = kept.iter().flat_map(|&n| block.nodes[n * stride..][..stride].iter().copied()).collect();
+            block.tags = kept.iter().map(|&n| block.tags[n]).collect();
+        }
+    }
+
+    /// The physical tag of a name: that of the group of the name, else `wish` or the next free one.
+    pub(super) fn group(&mut self, dimension: u8, name: &str, wish: Option<i32>) -> i32 {
+        let names = &mut self.mesh.physical_names;
+        if let Some(known) = names.iter().find(|n| n.dimension == dimension && n.name == name) {
+            return known.tag;
+        }
+        let free = |tag: i32| names.iter().all(|n| n.tag != tag);
+        let tag = wish
+            .filter(|&tag| tag > 0 && free(tag))
+            .unwrap_or_else(|| names.iter().map(|n| n.tag).max().unwrap_or(0).max(0).saturating_add(1));
+        names.push(PhysicalName { dimension, tag, name: name.to_owned() });
+        tag
+    }
+
+    /// Says which groups an entity belongs to.
+    pub(super) fn entity(&mut self, key: EntityKey, physical_tags: Vec<i32>) {
+        self.mesh.entities.push(Entity { key, bounds: [[0.0; 3]; 2], physical_tags, boundary: Vec::new() });
+    }
+
+    /// The finished mesh: entities complete with boxes, the volume named, every cell turned so that its volume is
+    /// positive.
+    pub(super) fn finish(mut self) -> Mesh {
+        self.mesh.blocks.retain(|block| !block.tags.is_empty());
+        let used: HashSet<EntityKey> = self.mesh.blocks.iter().map(|block| block.entity).collect();
+        self.mesh.entities.retain(|entity| used.contains(&entity.key));
+        self.name_volume();
+        let known: HashSet<EntityKey> = self.mesh.entities.iter().map(|entity| entity.key).collect();
+        let mut missing: Vec<EntityKey> = used.difference(&known).copied().collect();
+        missing.sort_unstable();
+        missing.into_iter().for_each(|key| self.entity(key, Vec::new()));
+        self.mesh.entities.sort_by_key(|entity| entity.key);
+        let mut mesh = self.mesh;
+        bounds(&mut mesh);
+        turned::turn(&mut mesh);
+        mesh
+    }
+
+    /// Puts the entities of the top dimension that belong to no group into one.
+    fn name_volume(&mut self) {
+        let top = self.mesh.blocks.iter().map(|block| block.entity.dimension).max().unwrap_or(3);
+        let grouped: HashSet<EntityKey> =
+            self.mesh.entities.iter().filter(|e| !e.physical_tags.is_empty()).map(|e| e.key).collect();
+        let mut plain: Vec<EntityKey> = self.mesh.blocks.iter().map(|block| block.entity).collect();
+        plain.retain(|key| key.dimension == top && !grouped.contains(key));
+        plain.sort_unstable();
+        plain.dedup();
+        if plain.is_empty() {
+            return;
+        }
+        // Surfaces may carry tags without a name, which the volume's must not repeat.
+        let last = self.mesh.entities.iter().flat_map(|e| &e.physical_tags).copied().max().unwrap_or(0);
+        let tag = self.group(top, VOLUME_NAME, Some(last.saturating_add(1)));
+        for key in plain {
+            self.mesh.entities.retain(|entity| entity.key != key);
+            self.entity(key, vec![tag]);
+        }
+    }
+}
+
+/// The node that a file's number means, counted from `base`, in a mesh of `count` points.
+///
+/// # Errors
+/// [`Fault::UnknownNode`].
+pub(super) fn node_of(count: usize, number: i64, base: i64, by: u64) -> Result<NodeId, Fault> {
+    let index = number.checked_sub(base).and_then(|n| usize::try_from(n).ok()).filter(|&n| n < count);
+    match index {
+        Some(index) => Ok(NodeId::new(index)?),
+        None => Err(Fault::NodeRange { by, node: number, first: base, last: base + count as i64 - 1 }),
+    }
+}
+
+/// Gives the entities their boxes.
+fn bounds(mesh: &mut Mesh) {
+    let places: FxHashMap<EntityKey, usize> = mesh.entities.iter().enumerate().map(|(n, e)| (e.key, n)).collect();
+    let mut boxes = vec![[DVec3::INFINITY, DVec3::NEG_INFINITY]; mesh.entities.len()];
+    for block in &mesh.blocks {
+        let Some(&place) = places.get(&block.entity) else { continue };
+        let [lower, upper] = &mut boxes[place];
+        for node in &block.nodes {
+            let at = mesh.points[node.index()];
+            (*lower, *upper) = (lower.min(at), upper.max(at));
+        }
+    }
+    for (entity, [lower, upper]) in mesh.entities.iter_mut().zip(boxes) {
+        entity.bounds = [lower.to_array(), upper.to_array()];
+    }
+}

@@ -1,0 +1,153 @@
+//! A mesh from the tree of a CGNS file.
+
+use glam::DVec3;
+
+use super::conditions::{Conditions, Families};
+use super::connections::{self, Joined};
+use super::fault::CgnsFault;
+use super::labels;
+use super::sections::{Section, sections};
+use super::tree::Tree;
+use crate::formats::assembly::{Assembly, node_of};
+use crate::formats::error::{Fault, Flaw};
+use crate::mesh::{Mesh, NodeId};
+
+/// A zone and its place among all.
+pub(super) struct Zone<'a> {
+    pub(super) tree: &'a Tree<'a>,
+    /// Points of the zones before it.
+    pub(super) start: usize,
+    pub(super) points: Vec<DVec3>,
+    pub(super) sections: Vec<Section<'a>>,
+}
+
+impl Zone<'_> {
+    /// The place among the points of all zones of the zone's own point number.
+    pub(super) fn point(&self, number: i64) -> Result<usize, Fault> {
+        Ok(self.start + node_of(self.points.len(), number, 1, 0)?.index())
+    }
+}
+
+/// The mesh of the first base.
+pub(super) fn mesh(tree: &Tree) -> Result<Mesh, Flaw> {
+    let base = tree.child(labels::BASE).ok_or_else(|| tree.flaw(CgnsFault::NoBase))?;
+    let dimensions = base.ints()?;
+    let dimension = match dimensions.get(0) {
+        Some(2) => 2,
+        Some(3) => 3,
+        other => return Err(base.flaw(CgnsFault::Dimension(other.unwrap_or(0)))),
+    };
+    let mut zones = Vec::new();
+    let mut start = 0;
+    for node in base.all(labels::ZONE) {
+        let zone = zone(node, start)?;
+        start += zone.points.len();
+        zones.push(zone);
+    }
+    if zones.is_empty() {
+        return Err(base.flaw(CgnsFault::NoZone));
+    }
+    let mut joined = connections::join(&zones)?;
+    let (points, nodes) = merged(&zones, &mut joined);
+    let mut assembly = Assembly::new(points).map_err(|fault| base.general(fault))?;
+    assembly.mesh.notes.append(&mut joined.notes);
+    let bases = tree.all(labels::BASE).count();
+    if bases > 1 {
+        assembly.mesh.notes.push(format!("the file holds {bases} bases; {} is read", base.path));
+    }
+    let mut conditions = Conditions::new(Families::new(base), dimension);
+    let mut tags = 0;
+    for zone in &zones {
+        let nodes = &nodes[zone.start..zone.start + zone.points.len()];
+        let labels = conditions.of_zone(zone, nodes)?;
+        elements(&mut assembly, zone, nodes, &labels, &mut conditions, tags)?;
+        tags += zone.sections.last().map_or(0, |section| section.first + section.count as u64 - 1);
+    }
+    conditions.finish(&mut assembly);
+    if zones.len() > 1 {
+        for zone in &zones {
+            let nodes = nodes[zone.start..zone.start + zone.points.len()].to_vec();
+            assembly.mesh.zones.push(crate::mesh::Zone { name: zone.tree.path.clone(), nodes });
+        }
+    }
+    Ok(assembly.finish())
+}
+
+fn zone<'a>(tree: &'a Tree<'a>, start: usize) -> Result<Zone<'a>, Flaw> {
+    let kind = tree.child(labels::ZONE_TYPE).map(Tree::text).unwrap_or_default();
+    if kind != "Unstructured" {
+        return Err(tree.flaw(CgnsFault::ZoneType(kind)));
+    }
+    let count = tree.ints()?.get(0).and_then(|n| usize::try_from(n).ok()).unwrap_or(0);
+    let coordinates = tree.required(labels::COORDINATES, "GridCoordinates")?;
+    let mut points = Vec::new();
+    for (axis, name) in ["CoordinateX", "CoordinateY", "CoordinateZ"].into_iter().enumerate() {
+        let array = match coordinates.named(labels::ARRAY, name) {
+            // Plane meshes may lack the third.
+            None if axis == 2 => break,
+            None => return Err(coordinates.flaw(CgnsFault::Missing { label: labels::ARRAY, name })),
+            Some(array) => array,
+        };
+        let values = array.reals()?;
+        if values.len() != count {
+            let fault = CgnsFault::Length { what: "the coordinate", found: values.len(), needed: count as u64 };
+            return Err(array.flaw(fault));
+        }
+        points.resize(count, DVec3::ZERO);
+        points.iter_mut().zip(values.iter()).for_each(|(point, &x)| point[axis] = x);
+    }
+    Ok(Zone { tree, start, points, sections: sections(tree)? })
+}
+
+/// The points of all zones, each once; and the node of every point of every zone.
+fn merged(zones: &[Zone], joined: &mut Joined) -> (Vec<DVec3>, Vec<NodeId>) {
+    let mut points: Vec<DVec3> = Vec::new();
+    let mut nodes: Vec<NodeId> = Vec::new();
+    for zone in zones {
+        for (n, &point) in zone.points.iter().enumerate() {
+            let (place, root) = (zone.start + n, joined.root(zone.start + n));
+            if root == place {
+                // Beyond 32 bits the assembly of so many points fails.
+                nodes.push(NodeId::new(points.len()).unwrap_or_default());
+                points.push(point);
+            } else {
+                nodes.push(nodes[root]);
+            }
+        }
+    }
+    (points, nodes)
+}
+
+/// Adds a zone's elements, numbered as in the file, behind those of the zones before.
+fn elements(
+    assembly: &mut Assembly,
+    zone: &Zone,
+    nodes: &[NodeId],
+    labels: &[u32],
+    conditions: &mut Conditions,
+    tags: u64,
+) -> Result<(), Flaw> {
+    let mut own = Vec::new();
+    for section in &zone.sections {
+        // Neighbours in a section mostly share their patch.
+        let mut last = None;
+        section.each(|n, element| {
+            let tag = section.first + n as u64;
+            assembly.set_order(element.cell, element.order).map_err(|fault| section.flaw(fault))?;
+            own.clear();
+            for number in element.nodes() {
+                let node = node_of(nodes.len(), number, 1, tag).map_err(|fault| section.flaw(fault))?;
+                own.push(nodes[node.index()]);
+            }
+            let place = (labels[section.before + n], element.cell);
+            let entity = match last {
+                Some((known, entity)) if known == place => entity,
+                _ => conditions.entity(zone, section, place.0, place.1),
+            };
+            last = Some((place, entity));
+            assembly.push_tagged(element.cell, entity, tags + tag, &own);
+            Ok(())
+        })?;
+    }
+    Ok(())
+}

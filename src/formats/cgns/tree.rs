@@ -1,0 +1,160 @@
+//! The tree of a CGNS file, as the reading child hands it on.
+
+use std::borrow::Cow;
+
+use super::fault::CgnsFault;
+use super::labels::{self, kind};
+use crate::formats::error::{Fault, Flaw, Place};
+
+/// Levels that are followed; the child goes less deep.
+const DEEPEST: usize = 64;
+
+/// A node: its name, label, array and children.
+#[derive(Debug)]
+pub(super) struct Tree<'a> {
+    pub(super) path: String,
+    pub(super) name: &'a str,
+    pub(super) label: &'a str,
+    kind: u8,
+    data: &'a [u8],
+    pub(super) children: Vec<Tree<'a>>,
+}
+
+/// Why an answer holds no tree.
+#[derive(Debug)]
+pub(super) enum Failure {
+    /// The library told why.
+    Told(String),
+    /// The answer ends too early.
+    Cut,
+}
+
+impl<'a> Tree<'a> {
+    /// The tree in an answer; the file itself is its root.
+    pub(super) fn parse(answer: &'a [u8]) -> Result<Tree<'a>, Failure> {
+        if let Some(told) = answer.strip_prefix(labels::FAILURE) {
+            return Err(Failure::Told(String::from_utf8_lossy(told).into_owned()));
+        }
+        let mut bytes = answer.strip_prefix(labels::TREE).ok_or(Failure::Cut)?;
+        let children = children(&mut bytes, "", 0).ok_or(Failure::Cut)?;
+        if bytes != labels::TREE {
+            return Err(Failure::Cut);
+        }
+        Ok(Tree { path: "/".into(), name: "", label: "", kind: kind::NONE, data: &[], children })
+    }
+
+    /// A fault in this node.
+    pub(super) fn flaw(&self, fault: CgnsFault) -> Flaw {
+        self.general(fault.into())
+    }
+
+    /// A fault in this node that other formats know too.
+    pub(super) fn general(&self, fault: Fault) -> Flaw {
+        Flaw::new(Place::Node(self.path.clone()), fault)
+    }
+
+    /// Children with a label.
+    pub(super) fn all<'b>(&'b self, label: &'static str) -> impl Iterator<Item = &'b Tree<'a>> {
+        self.children.iter().filter(move |child| child.label == label)
+    }
+
+    /// The first child with a label.
+    pub(super) fn child(&self, label: &'static str) -> Option<&Tree<'a>> {
+        self.children.iter().find(|child| child.label == label)
+    }
+
+    /// The child with a label and a name.
+    pub(super) fn named(&self, label: &'static str, name: &str) -> Option<&Tree<'a>> {
+        self.all(label).find(|child| child.name == name)
+    }
+
+    /// The child with a label and a name, which must be there.
+    pub(super) fn required(&self, label: &'static str, name: &'static str) -> Result<&Tree<'a>, Flaw> {
+        self.named(label, name).ok_or_else(|| self.flaw(CgnsFault::Missing { label, name }))
+    }
+
+    /// The array as text, without what pads it.
+    pub(super) fn text(&self) -> String {
+        let text = if self.kind == kind::TEXT { self.data } else { &[] };
+        String::from_utf8_lossy(text).trim_end_matches(['\0', ' ']).to_owned()
+    }
+
+    /// The array as whole numbers.
+    pub(super) fn ints(&self) -> Result<Ints<'a>, Flaw> {
+        match self.kind {
+            kind::INT | kind::LONG => Ok(Ints { data: self.data, long: self.kind == kind::LONG }),
+            _ => Err(self.flaw(CgnsFault::NotNumbers("whole numbers"))),
+        }
+    }
+
+    /// The array as real numbers; whole numbers are taken too.
+    pub(super) fn reals(&self) -> Result<Cow<'_, [f64]>, Flaw> {
+        match self.kind {
+            kind::REAL => Ok(self.data.chunks_exact(8).map(|x| f64::from_le_bytes(eight(x))).collect()),
+            kind::INT | kind::LONG => Ok(self.ints()?.iter().map(|x| x as f64).collect()),
+            _ => Err(self.flaw(CgnsFault::NotNumbers("real numbers"))),
+        }
+    }
+}
+
+/// Whole numbers of 4 or 8 bytes.
+#[derive(Clone, Copy)]
+pub(super) struct Ints<'a> {
+    data: &'a [u8],
+    long: bool,
+}
+
+impl<'a> Ints<'a> {
+    /// How many.
+    pub(super) fn len(self) -> usize {
+        self.data.len() / if self.long { 8 } else { 4 }
+    }
+
+    /// The number at a place.
+    pub(super) fn get(self, n: usize) -> Option<i64> {
+        if self.long {
+            self.data.get(8 * n..8 * n + 8).map(|x| i64::from_le_bytes(eight(x)))
+        } else {
+            let x = self.data.get(4 * n..4 * n + 4)?;
+            Some(i32::from_le_bytes([x[0], x[1], x[2], x[3]]).into())
+        }
+    }
+
+    /// All of them.
+    pub(super) fn iter(self) -> impl Iterator<Item = i64> + 'a {
+        (0..self.len()).filter_map(move |n| self.get(n))
+    }
+}
+
+fn eight(x: &[u8]) -> [u8; 8] {
+    let mut bytes = [0; 8];
+    bytes.copy_from_slice(x);
+    bytes
+}
+
+fn children<'a>(bytes: &mut &'a [u8], path: &str, depth: usize) -> Option<Vec<Tree<'a>>> {
+    let count = number(bytes)?;
+    if depth > DEEPEST {
+        return None;
+    }
+    let mut nodes = Vec::new();
+    for _ in 0..count {
+        let name = std::str::from_utf8(string(bytes)?).ok()?;
+        let label = std::str::from_utf8(string(bytes)?).ok()?;
+        let kind = *bytes.split_off_first()?;
+        let data = string(bytes)?;
+        let path = format!("{path}/{name}");
+        let children = children(bytes, &path, depth + 1)?;
+        nodes.push(Tree { path, name, label, kind, data, children });
+    }
+    Some(nodes)
+}
+
+fn number(bytes: &mut &[u8]) -> Option<u64> {
+    Some(u64::from_le_bytes(eight(bytes.split_off(..8)?)))
+}
+
+fn string<'a>(bytes: &mut &'a [u8]) -> Option<&'a [u8]> {
+    let length = usize::try_from(number(bytes)?).ok()?;
+    bytes.split_off(..length)
+}

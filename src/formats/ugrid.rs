@@ -1,0 +1,106 @@
+//! UGRID (AFLR3), read: linear meshes in one stream of numbers, boundary faces by surface number.
+//!
+//! The file does not say how its numbers are written; its name does (`case.lb8.ugrid`), and where it does not, the sizes
+//! tell. Names of surfaces stand in a `.mapbc` file beside it.
+
+mod kind;
+mod mapbc;
+
+use std::io::BufRead;
+use std::path::Path;
+
+use glam::DVec3;
+
+use super::assembly::{Assembly, node_of};
+use super::error::{Error, Fault, Flaw};
+use super::numbers::Numbers;
+use crate::element::order::FileOrder;
+use crate::element::{Cell, Order};
+use crate::mesh::{EntityKey, Mesh, NodeId};
+
+pub(super) use kind::{encoding, is_name};
+
+/// The faces, then the volume cells, in file order.
+const FACES: [Cell; 2] = [Cell::Triangle, Cell::Quad];
+const CELLS: [Cell; 4] = [Cell::Tet, Cell::Pyramid, Cell::Prism, Cell::Hex];
+
+/// Reads a mesh from a file's content, in the encoding that [`encoding`] found.
+///
+/// # Errors
+/// The first [`Fault`] and its place. Memory stays within a small multiple of the file's length.
+pub(super) fn read(numbers: &mut Numbers<impl BufRead>) -> Result<Mesh, Flaw> {
+    numbers.begin_record("the counts")?;
+    let mut counts = [0; 7];
+    for count in &mut counts {
+        *count = numbers.int("the counts of nodes, faces and cells")?;
+    }
+    numbers.end_record("the counts", true)?;
+    numbers.begin_record("the mesh")?;
+    let [points, counts @ ..] = counts;
+    let points = numbers.checked(points, "nodes", 0, 3)?;
+    let mut nodes = Vec::with_capacity(points);
+    for _ in 0..points {
+        let what = "a node's coordinates";
+        nodes.push(DVec3::new(numbers.real(what)?, numbers.real(what)?, numbers.real(what)?));
+    }
+    let mut assembly = Assembly::new(nodes).map_err(|fault| numbers.flaw(fault))?;
+    let [faces @ .., _, _, _, _] = counts;
+    let [_, _, cells @ ..] = counts;
+    let faces =
+        [connectivity(numbers, points, FACES[0], faces[0])?, connectivity(numbers, points, FACES[1], faces[1])?];
+    for (cell, nodes) in FACES.into_iter().zip(&faces) {
+        for face in nodes.chunks_exact(cell.corner_count()) {
+            let surface = surface(numbers)?;
+            assembly.push(cell, EntityKey::new(2, surface), face);
+        }
+    }
+    for (cell, count) in CELLS.into_iter().zip(cells) {
+        let nodes = connectivity(numbers, points, cell, count)?;
+        nodes.chunks_exact(cell.corner_count()).for_each(|nodes| assembly.push(cell, EntityKey::new(3, 1), nodes));
+    }
+    // Behind the cells some writers add what is not needed here: volume numbers, layers, spacings.
+    numbers.end_record("the mesh", false)?;
+    let mut surfaces: Vec<EntityKey> = assembly.mesh.blocks.iter().map(|block| block.entity).collect();
+    surfaces.retain(|key| key.dimension == 2);
+    surfaces.sort_unstable();
+    surfaces.dedup();
+    surfaces.into_iter().for_each(|key| assembly.entity(key, vec![key.tag]));
+    Ok(assembly.finish())
+}
+
+/// The number of the surface that a face belongs to.
+fn surface(numbers: &mut Numbers<impl BufRead>) -> Result<i32, Flaw> {
+    let what = "a face's surface number";
+    let value = numbers.int(what)?;
+    match i32::try_from(value) {
+        Ok(surface) if surface > 0 => Ok(surface),
+        _ => Err(numbers.flaw(Fault::Number { what, found: value.to_string() })),
+    }
+}
+
+/// The nodes of `count` elements of a kind, in internal order.
+fn connectivity(
+    numbers: &mut Numbers<impl BufRead>,
+    points: usize,
+    cell: Cell,
+    count: i64,
+) -> Result<Vec<NodeId>, Flaw> {
+    let slots = FileOrder::Ugrid.slots(cell, Order::LINEAR).unwrap_or_default();
+    let count = numbers.checked(count, "elements", slots.len() as u64, 0)?;
+    let mut nodes = vec![NodeId::default(); count * slots.len()];
+    for (element, nodes) in (1..).zip(nodes.chunks_exact_mut(slots.len())) {
+        for &slot in slots {
+            let number = numbers.int("an element's nodes")?;
+            nodes[usize::from(slot)] = node_of(points, number, 1, element).map_err(|fault| numbers.flaw(fault))?;
+        }
+    }
+    Ok(nodes)
+}
+
+/// Names the surfaces as the `.mapbc` file beside the mesh does, where there is one.
+///
+/// # Errors
+/// [`Error`] where it is damaged.
+pub(super) fn name_surfaces(mesh: &mut Mesh, path: &Path) -> Result<(), Error> {
+    mapbc::apply(mesh, path)
+}

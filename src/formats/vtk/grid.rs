@@ -1,0 +1,103 @@
+//! A mesh from the arrays of an unstructured grid.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+
+use crate::element::order::FileOrder;
+use crate::element::type_code::{self, VtkType};
+use crate::formats::assembly::{Assembly, node_of};
+use crate::formats::error::Fault;
+use crate::mesh::{EntityKey, Mesh, NodeId};
+
+/// Cell arrays that tell the entity of a cell, the most telling first: this program's and Gmsh's, then other programs'.
+pub(super) const ENTITY_ARRAYS: [&str; 7] =
+    ["CellEntityIds", "gmsh:geometrical", "medit:ref", "attribute", "material", "gmsh:physical", "patch"];
+
+/// Cell arrays that tell the physical group of a cell beside its entity.
+pub(super) const GROUP_ARRAYS: [&str; 2] = ["patch", "gmsh:physical"];
+
+/// An unstructured grid as VTK files hold it.
+#[derive(Debug, Default)]
+pub(super) struct Grid {
+    pub(super) points: Vec<f64>,
+    pub(super) connectivity: Vec<i64>,
+    /// End of each cell in the connectivity.
+    pub(super) offsets: Vec<i64>,
+    pub(super) types: Vec<i64>,
+    /// Whole-number cell arrays of [`ENTITY_ARRAYS`] and [`GROUP_ARRAYS`].
+    pub(super) arrays: BTreeMap<String, Vec<i64>>,
+    /// Whether the file is of a version in which two edges of Lagrange hexes stood the other way round.
+    pub(super) old_hexes: bool,
+}
+
+impl Grid {
+    /// The mesh.
+    ///
+    /// # Errors
+    /// A [`Fault`] of the arrays.
+    pub(super) fn mesh(self) -> Result<Mesh, Fault> {
+        let cells = self.types.len();
+        if self.offsets.len() != cells {
+            let (announced, found) = (cells as u64, self.offsets.len() as u64);
+            return Err(Fault::Miscounted { what: "ends of cells", announced, found });
+        }
+        let points = self.points.chunks_exact(3).map(DVec3::from_slice).collect();
+        let mut assembly = Assembly::new(points)?;
+        let whole = |name: &&str| self.arrays.get(*name).filter(|values| values.len() == cells);
+        let entities = ENTITY_ARRAYS.iter().find_map(whole);
+        let groups = GROUP_ARRAYS.iter().find_map(whole).or(entities);
+        let mut tags: BTreeMap<EntityKey, Vec<i32>> = BTreeMap::new();
+        let mut nodes = Vec::new();
+        let mut start = 0;
+        for n in 0..cells {
+            let end = usize::try_from(self.offsets[n]).ok().filter(|&end| end >= start);
+            let numbers = end.and_then(|end| self.connectivity.get(start..end));
+            let Some(numbers) = numbers else {
+                let (count, rest) = (self.offsets[n].unsigned_abs(), self.connectivity.len() as u64);
+                return Err(Fault::Count { what: "nodes of cells", count, rest });
+            };
+            start += numbers.len();
+            let tag = n as u64 + 1;
+            let cell = self.cell(&mut assembly, self.types[n], numbers, tag, &mut nodes)?;
+            let number = |values: Option<&Vec<i64>>| values.and_then(|values| i32::try_from(values[n]).ok());
+            let entity = EntityKey::new(cell.dimension() as u8, number(entities).filter(|&tag| tag > 0).unwrap_or(1));
+            let known = tags.entry(entity).or_default();
+            if let Some(group) = number(groups).filter(|group| *group > 0 && !known.contains(group)) {
+                known.push(group);
+            }
+            assembly.push_tagged(cell, entity, tag, &nodes);
+        }
+        tags.into_iter().for_each(|(key, tags)| assembly.entity(key, tags));
+        if entities.is_none() {
+            assembly.mesh.notes.push("the file has no cell array that tells patches apart (CellEntityIds, ...)".into());
+        }
+        Ok(assembly.finish())
+    }
+
+    /// A cell's kind; its nodes in internal order go to `nodes`.
+    fn cell(
+        &self,
+        assembly: &mut Assembly,
+        code: i64,
+        numbers: &[i64],
+        tag: u64,
+        nodes: &mut Vec<NodeId>,
+    ) -> Result<crate::element::Cell, Fault> {
+        let (cell, order) = match type_code::from_vtk(code, numbers.len()) {
+            VtkType::Complete(cell, order) => (cell, order),
+            VtkType::Incomplete => return Err(Fault::IncompleteCell { tag, code }),
+            VtkType::Count => return Err(Fault::CellNodes { tag, code, found: numbers.len() }),
+            VtkType::Unknown => return Err(Fault::UnknownCell { tag, code }),
+        };
+        assembly.set_order(cell, order)?;
+        let file_order = if self.old_hexes { FileOrder::VtkBefore21 } else { FileOrder::Vtk };
+        let slots = file_order.slots(cell, order).unwrap_or_default();
+        nodes.clear();
+        nodes.resize(numbers.len(), NodeId::default());
+        for (&slot, &number) in slots.iter().zip(numbers) {
+            nodes[usize::from(slot)] = node_of(assembly.mesh.points.len(), number, 0, tag)?;
+        }
+        Ok(cell)
+    }
+}

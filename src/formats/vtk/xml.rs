@@ -1,0 +1,325 @@
+//! VTU: XML, with arrays as text, as base64 in place, or appended behind the XML as base64 or raw bytes.
+
+use std::borrow::Cow;
+
+use base64::Engine;
+use base64::engine::{GeneralPurpose, GeneralPurposeConfig};
+use quick_xml::Reader;
+use quick_xml::events::{BytesStart, Event};
+
+use super::array::{Number, Values};
+use super::compressed::Compressor;
+use super::grid::{ENTITY_ARRAYS, GROUP_ARRAYS, Grid};
+use crate::formats::error::{Fault, Flaw, Place};
+use crate::mesh::Mesh;
+
+/// Reads a mesh from a file's whole content.
+///
+/// # Errors
+/// The first [`Fault`] and its place.
+pub(in crate::formats) fn read(content: &[u8]) -> Result<Mesh, Flaw> {
+    let (head, appended) = split(content)?;
+    let mut file = File { appended, ..File::default() };
+    file.parse(head)?;
+    file.grid.mesh().map_err(|fault| Flaw::new(Place::Byte(0), fault))
+}
+
+/// The XML, and the appended data behind the underscore. Raw ones are no XML, and hide it from a parser.
+fn split(content: &[u8]) -> Result<(&[u8], Appended<'_>), Flaw> {
+    let name = b"<AppendedData";
+    let Some(at) = content.windows(name.len()).position(|window| window == name) else {
+        return Ok((content, Appended::default()));
+    };
+    let place = |at: usize| Place::Byte(at as u64);
+    let cut = || Flaw::new(place(at), Fault::Truncated("the appended data"));
+    let tag = content[at..].iter().position(|&byte| byte == b'>').ok_or_else(cut)?;
+    let raw = content[at..at + tag].windows(5).any(|window| window == b"\"raw\"");
+    let start = content[at + tag..].iter().position(|&byte| byte == b'_').ok_or_else(cut)?;
+    let start = at + tag + start + 1;
+    Ok((&content[..at], Appended { bytes: &content[start..], start, raw }))
+}
+
+#[derive(Clone, Copy, Default)]
+struct Appended<'a> {
+    bytes: &'a [u8],
+    /// Their place in the file.
+    start: usize,
+    raw: bool,
+}
+
+/// Where an array's values stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Form {
+    Text,
+    Inline,
+    Appended,
+}
+
+/// An array as its tag tells of it.
+#[derive(Debug)]
+struct Array {
+    section: String,
+    name: String,
+    number: Number,
+    components: usize,
+    form: Form,
+    offset: usize,
+    text: Vec<u8>,
+}
+
+#[derive(Default)]
+struct File<'a> {
+    appended: Appended<'a>,
+    big_endian: bool,
+    long_headers: bool,
+    compressor: Option<Compressor>,
+    grid: Grid,
+    /// Points of the pieces before the present one.
+    before: i64,
+    /// Names of the open elements.
+    open: Vec<String>,
+    /// The array whose element is open.
+    array: Option<Array>,
+    /// Bytes of the XML that were parsed.
+    place: u64,
+}
+
+impl File<'_> {
+    fn flaw(&self, fault: Fault) -> Flaw {
+        Flaw::new(Place::Byte(self.place), fault)
+    }
+
+    fn parse(&mut self, head: &[u8]) -> Result<(), Flaw> {
+        let mut reader = Reader::from_reader(head);
+        reader.config_mut().check_end_names = false;
+        loop {
+            self.place = reader.buffer_position();
+            let event = reader.read_event().map_err(|error| self.flaw(Fault::Xml(error.to_string())))?;
+            match event {
+                Event::Start(start) => {
+                    self.start(&start)?;
+                    self.open.push(String::from_utf8_lossy(start.local_name().as_ref().as_bytes()).into_owned());
+                }
+                Event::Empty(start) => {
+                    self.start(&start)?;
+                    self.end_array()?;
+                }
+                Event::Text(text) => {
+                    // Text within an InformationKey of an array is none of its values.
+                    if self.open.last().is_some_and(|name| name == "DataArray")
+                        && let Some(array) = &mut self.array
+                    {
+                        array.text.extend_from_slice(text.as_bytes());
+                    }
+                }
+                Event::End(end) => {
+                    self.open.pop();
+                    match end.local_name().as_ref().as_bytes() {
+                        b"DataArray" => self.end_array()?,
+                        b"Piece" => self.before = (self.grid.points.len() / 3) as i64,
+                        _ => {}
+                    }
+                }
+                Event::Eof => return Ok(()),
+                _ => {}
+            }
+        }
+    }
+
+    fn start(&mut self, start: &BytesStart) -> Result<(), Flaw> {
+        let text = |name: &str| -> Option<String> {
+            let attribute = start.try_get_attribute(name).ok()??;
+            Some(String::from_utf8_lossy(attribute.value.as_ref().as_bytes()).into_owned())
+        };
+        match start.local_name().as_ref().as_bytes() {
+            b"VTKFile" => {
+                self.big_endian = text("byte_order").as_deref() == Some("BigEndian");
+                self.long_headers = text("header_type").as_deref() == Some("UInt64");
+                let version = text("version").unwrap_or_default();
+                let mut parts = version.split('.').map(|part| part.parse::<u32>().unwrap_or(0));
+                self.grid.old_hexes = (parts.next().unwrap_or(0), parts.next().unwrap_or(0)) < (2, 1);
+                if let Some(name) = text("compressor") {
+                    let known = Compressor::of(&name).ok_or(Fault::Compressed(format!("{name} is not known")));
+                    self.compressor = Some(known.map_err(|fault| self.flaw(fault))?);
+                }
+            }
+            b"DataArray" => {
+                let kind = text("type").unwrap_or_default();
+                let number = Number::of(&kind);
+                let section = self.open.last().cloned().unwrap_or_default();
+                let name = text("Name").unwrap_or_default();
+                if !wanted(&section, &name) {
+                    return Ok(());
+                }
+                let Some(number) = number else {
+                    return Err(self.flaw(Fault::Unexpected { what: "a type of numbers", found: kind }));
+                };
+                self.array = Some(Array {
+                    section,
+                    name,
+                    number,
+                    components: text("NumberOfComponents").and_then(|word| word.parse().ok()).unwrap_or(1),
+                    form: match text("format").as_deref() {
+                        Some("appended") => Form::Appended,
+                        Some("binary") => Form::Inline,
+                        _ => Form::Text,
+                    },
+                    offset: text("offset").and_then(|word| word.parse().ok()).unwrap_or(0),
+                    text: Vec::new(),
+                });
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Takes the array whose element ends into the grid.
+    fn end_array(&mut self) -> Result<(), Flaw> {
+        let Some(array) = self.array.take() else { return Ok(()) };
+        let values = self.values(&array)?;
+        let grid = &mut self.grid;
+        match (array.section.as_str(), array.name.as_str()) {
+            ("Points", _) => {
+                if array.components != 3 {
+                    let fault =
+                        Fault::Unexpected { what: "points of three coordinates", found: array.components.to_string() };
+                    return Err(self.flaw(fault));
+                }
+                grid.points.extend(values.real());
+            }
+            ("Cells", "connectivity") => {
+                let before = self.before;
+                grid.connectivity.extend(values.whole().into_iter().map(|n| n.saturating_add(before)));
+            }
+            ("Cells", "offsets") => {
+                let before = grid.offsets.last().copied().unwrap_or(0);
+                grid.offsets.extend(values.whole().into_iter().map(|n| n.saturating_add(before)));
+            }
+            ("Cells", "types") => grid.types.extend(values.whole()),
+            _ => grid.arrays.entry(array.name).or_default().extend(values.whole()),
+        }
+        Ok(())
+    }
+
+    fn values(&self, array: &Array) -> Result<Values, Flaw> {
+        let mut values = if array.section == "Points" { Values::Real(Vec::new()) } else { Values::Whole(Vec::new()) };
+        if array.form == Form::Text {
+            let text = std::str::from_utf8(&array.text).map_err(|_| self.flaw(Fault::NotUtf8("an array")))?;
+            for word in text.split_ascii_whitespace() {
+                values.push_word(word).map_err(|fault| self.flaw(fault))?;
+            }
+            return Ok(values);
+        }
+        let (bytes, raw, place) = match array.form {
+            Form::Appended => {
+                let bytes = self.appended.bytes.get(array.offset..).unwrap_or_default();
+                (bytes, self.appended.raw, Place::Byte((self.appended.start + array.offset) as u64))
+            }
+            _ => (array.text.trim_ascii(), false, Place::Byte(self.place)),
+        };
+        let mut source = Source { bytes, raw };
+        let decoded = self.content(&mut source).map_err(|fault| Flaw::new(place, fault))?;
+        array.number.decode(&decoded, self.big_endian, &mut values);
+        Ok(values)
+    }
+
+    /// The bytes of an array behind their header.
+    fn content<'s>(&self, source: &mut Source<'s>) -> Result<Cow<'s, [u8]>, Fault> {
+        let width = if self.long_headers { 8 } else { 4 };
+        let Some(compressor) = self.compressor else {
+            return source.counted(width, |header| self.number(header));
+        };
+        // The header's length is not known before its first number; base64 encodes it apart from the blocks.
+        let first = source.peek(3 * width)?;
+        let [blocks, size, last] = std::array::from_fn(|n| self.number(&first[n * width..(n + 1) * width]));
+        let header = usize::try_from(blocks).ok().and_then(|n| n.checked_add(3)?.checked_mul(width));
+        let header = header.ok_or(Fault::Truncated("a compressed array"))?;
+        let header = source.take(header)?;
+        let sizes: Vec<u64> = header.chunks_exact(width).skip(3).map(|bytes| self.number(bytes)).collect();
+        let all = sizes.iter().try_fold(0_u64, |sum, &size| sum.checked_add(size));
+        let all = all.and_then(|all| usize::try_from(all).ok()).ok_or(Fault::Truncated("a compressed array"))?;
+        let blocks = source.take(all)?;
+        let mut rest = &blocks[..];
+        let mut content = Vec::new();
+        for (n, &length) in sizes.iter().enumerate() {
+            let Some(block) = rest.split_off(..length as usize) else {
+                return Err(Fault::Truncated("a compressed array"));
+            };
+            let size = if n + 1 == sizes.len() && last > 0 { last } else { size };
+            compressor.expand(block, size, &mut content)?;
+        }
+        Ok(content.into())
+    }
+
+    /// A header's number.
+    fn number(&self, bytes: &[u8]) -> u64 {
+        let mut wide = [0; 8];
+        if self.big_endian {
+            wide[8 - bytes.len()..].copy_from_slice(bytes);
+            u64::from_be_bytes(wide)
+        } else {
+            wide[..bytes.len()].copy_from_slice(bytes);
+            u64::from_le_bytes(wide)
+        }
+    }
+}
+
+/// Whether an array is of use.
+fn wanted(section: &str, name: &str) -> bool {
+    match section {
+        "Points" => true,
+        "Cells" => matches!(name, "connectivity" | "offsets" | "types"),
+        "CellData" => ENTITY_ARRAYS.contains(&name) || GROUP_ARRAYS.contains(&name),
+        _ => false,
+    }
+}
+
+/// Bytes as they are or in base64, from the front.
+struct Source<'a> {
+    bytes: &'a [u8],
+    raw: bool,
+}
+
+impl<'a> Source<'a> {
+    /// The next bytes, which stay.
+    fn peek(&self, count: usize) -> Result<Vec<u8>, Fault> {
+        Ok(Source { ..*self }.take(count)?.into_owned())
+    }
+
+    /// The next bytes; in base64 a group of their own, padded to whole quadruples.
+    fn take(&mut self, count: usize) -> Result<Cow<'a, [u8]>, Fault> {
+        let cut = || Fault::Truncated("an array");
+        if self.raw {
+            return Ok(self.bytes.split_off(..count).ok_or_else(cut)?.into());
+        }
+        let length = count.div_ceil(3).checked_mul(4).ok_or_else(cut)?;
+        let quads = self.bytes.split_off(..length).ok_or_else(cut)?;
+        let mut bytes = decode(quads)?;
+        if bytes.len() < count {
+            return Err(cut());
+        }
+        bytes.truncate(count);
+        Ok(bytes.into())
+    }
+
+    /// The bytes behind a header that counts them.
+    fn counted(&mut self, width: usize, number: impl Fn(&[u8]) -> u64) -> Result<Cow<'a, [u8]>, Fault> {
+        let cut = || Fault::Truncated("an array");
+        let count = number(&self.peek(width)?);
+        let count = usize::try_from(count).map_err(|_| cut())?;
+        let whole = self.take(count.checked_add(width).ok_or_else(cut)?)?;
+        Ok(match whole {
+            Cow::Borrowed(bytes) => bytes[width..].into(),
+            Cow::Owned(mut bytes) => bytes.split_off(width).into(),
+        })
+    }
+}
+
+/// Base64 of which only the beginning may be asked for: what stands behind the padding is not looked at.
+fn decode(quads: &[u8]) -> Result<Vec<u8>, Fault> {
+    let end = quads.chunks_exact(4).position(|quad| quad[3] == b'=').map_or(quads.len(), |n| 4 * n + 4);
+    let damaged = |error: base64::DecodeError| Fault::Compressed(error.to_string());
+    let bits = GeneralPurposeConfig::new().with_decode_allow_trailing_bits(true);
+    let engine = GeneralPurpose::new(&base64::alphabet::STANDARD, bits);
+    engine.decode(&quads[..end]).map_err(damaged)
+}

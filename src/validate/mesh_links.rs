@@ -1,0 +1,168 @@
+//! Faces, edges and points of the file that the mesh does not have, or not on its boundary.
+
+use linkage_schema::{Code, Findings, ModelLinks, Origin, SheetLinks, StringLinks};
+use rustc_hash::FxHashSet;
+
+use super::called;
+use super::linked_mesh::LinkedMesh;
+use crate::element::{Order, canonical};
+use crate::mesh::NodeId;
+
+pub(super) fn check(linked: &LinkedMesh<'_>, models: &[&ModelLinks<'_>], findings: &mut Findings) {
+    let mut inner = None;
+    let linked_faces: FxHashSet<usize> = models
+        .iter()
+        .flat_map(|links| &links.sheets)
+        .flat_map(|sheet| &sheet.faces)
+        .flat_map(|link| link.run.faces().filter_map(|face| linked.face(face)))
+        .collect();
+    for links in models {
+        links.sheets.iter().for_each(|sheet| faces(linked, sheet, &mut inner, findings));
+        links.strings.iter().for_each(|string| edges(linked, string, &linked_faces, findings));
+        for point in &links.points {
+            beyond(linked, &point.run.indices, "MeshPointReference", point.run.origin, findings);
+            points(linked, &point.run.indices, point.run.origin, findings);
+        }
+        names(linked, links, findings);
+    }
+}
+
+/// Indices that the mesh does not have.
+fn beyond(linked: &LinkedMesh<'_>, indices: &[u32], who: &str, origin: Origin, findings: &mut Findings) {
+    // Zeros are found by reading.
+    let mut missing = indices.iter().filter(|&&index| index > 0 && linked.node(index).is_none());
+    if let Some(first) = missing.next() {
+        findings.push(Code::IndexBeyondMesh, origin, || {
+            let count = 1 + missing.count();
+            format!(
+                "{who} has {count} indices without a node, the first is {first}; the mesh's go up to {}",
+                linked.last
+            )
+        });
+    }
+}
+
+fn faces(linked: &LinkedMesh<'_>, sheet: &SheetLinks<'_>, inner: &mut Option<Inner>, findings: &mut Findings) {
+    let who = called("MeshSheet", sheet.name());
+    for link in &sheet.faces {
+        let origin = link.run.origin;
+        beyond(linked, &link.run.indices, &who, origin, findings);
+        let (mut nowhere, mut inside): (Vec<&[u32]>, Vec<&[u32]>) = Default::default();
+        for face in link.run.faces() {
+            let nodes: Option<Vec<NodeId>> = face.iter().map(|&index| linked.node(index)).collect();
+            let Some(nodes) = nodes else { continue };
+            match linked.face(face) {
+                Some(found) if linked.sides[found].cells > 1 => inside.push(face),
+                Some(_) => {}
+                None if inner.get_or_insert_with(|| Inner::new(linked)).has(&nodes) => inside.push(face),
+                None => nowhere.push(face),
+            }
+        }
+        if let Some(first) = nowhere.first() {
+            findings.push(Code::NotInMesh, origin, || {
+                format!("{who} has {} faces that the mesh does not have, the first is {first:?}", nowhere.len())
+            });
+        }
+        if let Some(first) = inside.first() {
+            findings.push(Code::InteriorFace, origin, || {
+                format!("{who} has {} faces inside the volume, the first is {first:?}", inside.len())
+            });
+        }
+    }
+}
+
+fn edges(linked: &LinkedMesh<'_>, string: &StringLinks<'_>, faces: &FxHashSet<usize>, findings: &mut Findings) {
+    let who = called("MeshString", string.name());
+    let (mut all, mut bounding) = (0, 0);
+    for link in &string.edges {
+        beyond(linked, &link.run.indices, &who, link.run.origin, findings);
+        let mut nowhere: Vec<[u32; 2]> = Vec::new();
+        for ends in link.run.edges() {
+            match linked.edge(ends) {
+                Some(edge) => {
+                    all += 1;
+                    bounding += usize::from(linked.boundary.edge_faces[edge].iter().any(|face| faces.contains(face)));
+                }
+                None if ends.iter().all(|&index| linked.node(index).is_some()) => nowhere.push(ends),
+                None => {}
+            }
+        }
+        if let Some(first) = nowhere.first() {
+            findings.push(Code::EdgeNotInMesh, link.run.origin, || {
+                format!("{who} has {} edges that no face of the mesh has, the first is {first:?}", nowhere.len())
+            });
+        }
+    }
+    if bounding < all {
+        findings.push(Code::StringWithoutSheet, string.string.origin, || {
+            format!("{} of the {all} edges of {who} are edges of no linked face", all - bounding)
+        });
+    }
+}
+
+fn points(linked: &LinkedMesh<'_>, indices: &[u32], origin: Origin, findings: &mut Findings) {
+    let on_boundary: FxHashSet<NodeId> = linked.boundary.corners.iter().flatten().copied().collect();
+    let stray = |index: &&u32| linked.node(**index).is_some_and(|node| !on_boundary.contains(&node));
+    if let Some(first) = indices.iter().find(stray) {
+        findings.push(Code::StrayPoint, origin, || format!("MeshPointReference has point {first}, inside the volume"));
+    }
+}
+
+/// What is called by name can only be found under the names that the mesh has.
+fn names(linked: &LinkedMesh<'_>, links: &ModelLinks<'_>, findings: &mut Findings) {
+    let known = |name: &str, dimension: u8| {
+        linked.mesh.physical_names.iter().any(|own| own.dimension == dimension && own.name == name)
+    };
+    for sheet in &links.sheets {
+        let runs = sheet.named.iter().map(|link| (link.run.origin, format!("{} faces", link.run.references.len())));
+        let whole =
+            sheet.reference.filter(|name| !known(name, 2)).map(|name| (sheet.sheet.origin, format!("{name:?}")));
+        for (origin, what) in runs.chain(whole) {
+            findings.push(Code::UnknownMeshName, origin, || {
+                format!(
+                    "{} calls {what} by name, which this mesh file does not have",
+                    called("MeshSheet", sheet.name())
+                )
+            });
+        }
+    }
+    for string in &links.strings {
+        let runs = string.named.iter().map(|link| (link.run.origin, format!("{} edges", link.run.references.len())));
+        let whole =
+            string.reference.filter(|name| !known(name, 1)).map(|name| (string.string.origin, format!("{name:?}")));
+        for (origin, what) in runs.chain(whole) {
+            findings.push(Code::UnknownMeshName, origin, || {
+                format!(
+                    "{} calls {what} by name, which this mesh file does not have",
+                    called("MeshString", string.name())
+                )
+            });
+        }
+    }
+}
+
+/// The faces of all volume elements.
+struct Inner(FxHashSet<Vec<NodeId>>);
+
+impl Inner {
+    fn new(linked: &LinkedMesh<'_>) -> Inner {
+        let mut faces = FxHashSet::default();
+        for (_, block) in linked.mesh.blocks_of(3) {
+            for nodes in block.elements(Order::LINEAR) {
+                for face in block.cell.faces() {
+                    let corners: Vec<NodeId> = face.corners.iter().map(|&c| nodes[usize::from(c)]).collect();
+                    faces.insert(key(&corners));
+                }
+            }
+        }
+        Inner(faces)
+    }
+
+    fn has(&self, corners: &[NodeId]) -> bool {
+        self.0.contains(&key(corners))
+    }
+}
+
+fn key(corners: &[NodeId]) -> Vec<NodeId> {
+    canonical(corners)[..corners.len()].iter().map(|&q| corners[usize::from(q)]).collect()
+}

@@ -1,0 +1,108 @@
+//! What the file's references mean in the CAD.
+
+use cad::{EntityId, Model};
+use linkage_schema::{Code, Document, Findings, GeometryFile, GeometryId, Resolution, Target};
+use rustc_hash::FxHashMap;
+
+use super::called;
+use crate::associate::same_file;
+
+/// Extensions and format names of geometry that OpenCASCADE cannot read.
+const FOREIGN: [&str; 5] = ["nmb", "x_t", "x_b", "prt", "catpart"];
+
+/// The CAD entities of every reference, where there is a CAD file that OpenCASCADE read.
+#[derive(Debug, Default)]
+pub(super) struct Geometry {
+    entities: FxHashMap<GeometryId, Vec<EntityId>>,
+}
+
+impl Geometry {
+    /// Looks all references up, and finds those that lead nowhere and those of the wrong kind.
+    pub(super) fn new(
+        document: &Document,
+        resolution: &Resolution<'_>,
+        model: Option<&Model>,
+        findings: &mut Findings,
+    ) -> Geometry {
+        let mut geometry = Geometry::default();
+        for file in &document.geometry_files {
+            let given = model.is_some_and(|model| same_file(&file.filename, model.path()));
+            if let Some(format) = unreadable(file, resolution).filter(|_| !given) {
+                findings.push(Code::UnreadableGeometry, file.origin, || {
+                    format!("{:?} is geometry in the format {format}, which OpenCASCADE cannot read", file.filename)
+                });
+                continue;
+            }
+            if let Some(model) = model {
+                geometry.look_up(file, model, findings);
+            }
+        }
+        if model.is_some() {
+            resolution.models.iter().for_each(|links| geometry.kinds(links, findings));
+        }
+        geometry
+    }
+
+    fn look_up(&mut self, file: &GeometryFile, model: &Model, findings: &mut Findings) {
+        if !same_file(&file.filename, model.path()) {
+            findings.push(Code::OtherCadFile, file.origin, || {
+                format!("the linkage speaks of CAD {:?}, {} was given", file.filename, model.path().display())
+            });
+        }
+        for reference in &file.references {
+            match model.resolve(&reference.reference) {
+                Ok(found) => {
+                    // Of doubled ids the first holds.
+                    self.entities.entry(reference.id).or_insert(found);
+                }
+                Err(error) => findings.push(Code::UnknownReference, reference.origin, || error.to_string()),
+            }
+        }
+    }
+
+    /// The entities of a target; none where it was not found, or not looked for.
+    pub(super) fn of(&self, target: Option<&Target<'_>>) -> Vec<EntityId> {
+        let members = target.into_iter().flat_map(|target| &target.entities);
+        let mut all: Vec<EntityId> =
+            members.flat_map(|entity| self.entities.get(&entity.id).into_iter().flatten().copied()).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    /// The entities of one reference.
+    pub(super) fn of_id(&self, id: GeometryId) -> &[EntityId] {
+        self.entities.get(&id).map_or(&[], |found| found)
+    }
+
+    fn kinds(&self, links: &linkage_schema::ModelLinks<'_>, findings: &mut Findings) {
+        for sheet in &links.sheets {
+            for link in &sheet.faces {
+                let wrong = self.of(link.target.as_deref()).into_iter().find(|e| !matches!(e, EntityId::Face(_)));
+                if let Some(entity) = wrong {
+                    findings.push(Code::WrongKind, link.run.origin, || {
+                        format!("{} is linked to {entity}, which is no face", called("MeshSheet", sheet.name()))
+                    });
+                }
+            }
+        }
+        for string in &links.strings {
+            for link in &string.edges {
+                let wrong = self.of(link.target.as_deref()).into_iter().find(|e| matches!(e, EntityId::Vertex(_)));
+                if let Some(entity) = wrong {
+                    findings.push(Code::WrongKind, link.run.origin, || {
+                        format!("{} is linked to {entity}, which is no edge", called("MeshString", string.name()))
+                    });
+                }
+            }
+        }
+    }
+}
+
+/// The format of a geometry file that OpenCASCADE cannot read, by its attribute or its name.
+fn unreadable(file: &GeometryFile, resolution: &Resolution<'_>) -> Option<String> {
+    let foreign = |word: &str| FOREIGN.iter().any(|own| word.trim().eq_ignore_ascii_case(own));
+    let told = resolution.attribute(file.aref, "geometry format").filter(|word| foreign(word));
+    let by_name = || file.filename.rsplit_once('.').map(|(_, extension)| extension).filter(|word| foreign(word));
+    told.or_else(by_name).map(str::to_uppercase)
+}

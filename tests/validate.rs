@@ -1,0 +1,655 @@
+//! `sagitta validate`: every defect is found, with its line, and nothing else; good files are clean.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[macro_use]
+mod common;
+
+use std::ffi::OsString;
+use std::path::Path;
+
+use common::{fixture, sagitta, warn};
+use linkage_schema::Code;
+use serde_json::Value;
+
+/// What `sagitta validate --json` said.
+struct Validation {
+    code: i32,
+    json: Value,
+}
+
+impl Validation {
+    #[track_caller]
+    fn of(linkage: &Path, more: &[OsString]) -> Validation {
+        let arguments = args!["validate", linkage, "--json"];
+        let outcome = sagitta(arguments.into_iter().chain(more.iter().cloned()));
+        let json = serde_json::from_str(&outcome.stdout);
+        let json = json.unwrap_or_else(|e| panic!("{e}\n{}\n{}", outcome.stdout, outcome.stderr));
+        Validation { code: outcome.code.unwrap(), json }
+    }
+
+    /// With a case's mesh and STEP file.
+    #[track_caller]
+    fn full(case: &str, linkage: &Path) -> Validation {
+        Validation::of(linkage, &args!["--mesh", fixture(case, "msh"), "--cad", fixture(case, "step")])
+    }
+
+    fn found(&self) -> Vec<(String, u32)> {
+        let found = self.json["findings"].as_array().unwrap().iter();
+        found.map(|f| (f["code"].as_str().unwrap().into(), f["line"].as_u64().unwrap_or(0) as u32)).collect()
+    }
+
+    fn codes(&self) -> Vec<String> {
+        let mut codes: Vec<String> = self.found().into_iter().map(|(code, _)| code).collect();
+        codes.sort();
+        codes.dedup();
+        codes
+    }
+}
+
+/// The line, from 1, on which `needle` first stands.
+#[track_caller]
+fn line_of(text: &str, needle: &str) -> u32 {
+    let at = text.find(needle).unwrap_or_else(|| panic!("{needle:?} is not in the file"));
+    1 + text[..at].matches('\n').count() as u32
+}
+
+#[test]
+fn good_files_are_clean() {
+    for case in ["weeble", "weeble_hybrid", "wing_sharp", "sphere_shell", "cylinder_bl", "torus"] {
+        for extension in ["meshlink.xml", "grouped.meshlink.xml"] {
+            let file = fixture(case, extension);
+            if !file.exists() {
+                continue;
+            }
+            let validation = Validation::full(case, &file);
+            assert_eq!(validation.found(), [], "{case}.{extension}");
+            assert_eq!(validation.code, 0);
+            let sum = |key: &str| -> u64 {
+                validation.json["coverage"].as_array().unwrap().iter().map(|patch| patch[key].as_u64().unwrap()).sum()
+            };
+            assert!(sum("faces") > 0 && sum("faces") == sum("linked"), "{case}: {:#}", validation.json["coverage"]);
+            let sheets = validation.json["sheets"].as_array().unwrap();
+            assert!(
+                !sheets.is_empty() && sheets.iter().all(|sheet| sheet["farthest"].as_f64().unwrap() < 1e-9),
+                "{case}"
+            );
+        }
+    }
+}
+
+/// One change to the weeble's linkage file and what must be found, each at the first line with its needle.
+struct Defect {
+    name: &'static str,
+    from: &'static str,
+    to: &'static str,
+    found: &'static [(Code, &'static str)],
+}
+
+const fn defect(
+    name: &'static str,
+    from: &'static str,
+    to: &'static str,
+    found: &'static [(Code, &'static str)],
+) -> Defect {
+    Defect { name, from, to, found }
+}
+
+const FIRST_RUN: &str = "<MeshFace etype=\"Tri3\" format=\"text\" count=\"151\">";
+const SEAM: &str = "<MeshEdge etype=\"Edge2\" count=\"5\">3 16 16 17 17 18 18 19 19 4<";
+const SEAM_STRING: &str = "name=\"edge-5 (seam)\"";
+
+/// The defects of the issue's list, and more.
+const DEFECTS: &[Defect] = &[
+    defect(
+        "dangling gref",
+        "name=\"wall/face-2\" gref=\"2\"",
+        "name=\"wall/face-2\" gref=\"404\"",
+        &[(Code::DanglingReference, "gref=\"404\"")],
+    ),
+    defect("dangling aref", "aref=\"4\"", "aref=\"44\"", &[(Code::DanglingReference, "aref=\"44\"")]),
+    defect(
+        "dangling member",
+        "name=\"wall\">2 3 4<",
+        "name=\"wall\">2 3 44<",
+        &[(Code::DanglingReference, ">2 3 44<")],
+    ),
+    defect(
+        "duplicate gid",
+        "gid=\"3\" ref=\"face-3\"",
+        "gid=\"2\" ref=\"face-3\"",
+        &[
+            (Code::DuplicateId, "ref=\"face-3\""),
+            (Code::DanglingReference, "<GeometryGroup"),
+            (Code::DanglingReference, "name=\"wall/face-3\""),
+            (Code::DanglingReference, "gref=\"3\" dim"),
+        ],
+    ),
+    defect(
+        "duplicate attid",
+        "attid=\"3\"",
+        "attid=\"2\"",
+        &[(Code::DuplicateId, "name=\"model size\""), (Code::DanglingReference, "<AttributeGroup")],
+    ),
+    defect(
+        "group where an entity is needed",
+        "vref=\"207\" gref=\"2\"",
+        "vref=\"207\" gref=\"21\"",
+        &[(Code::GroupAsEntity, "vref=\"207\"")],
+    ),
+    defect(
+        "nested group",
+        "<GeometryGroup gid=\"21\" name=\"wall\">2 3 4</GeometryGroup>",
+        "<GeometryGroup gid=\"21\" name=\"wall\">2 3 4</GeometryGroup>\n<GeometryGroup gid=\"22\">21</GeometryGroup>",
+        &[(Code::NestedGroup, "gid=\"22\"")],
+    ),
+    defect(
+        "count too large",
+        "count=\"151\"",
+        "count=\"152\"",
+        &[
+            (Code::CountTooLarge, "count=\"152\""),
+            (Code::StrayVertex, "vref=\"207\""),
+            (Code::StringWithoutSheet, SEAM_STRING),
+        ],
+    ),
+    defect(
+        "count of 1e9",
+        "count=\"57\"",
+        "count=\"1000000000\"",
+        &[
+            (Code::CountTooLarge, "count=\"1000000000\""),
+            (Code::StrayVertex, "vref=\"326\""),
+            (Code::StringWithoutSheet, "name=\"edge-9 (seam)\""),
+        ],
+    ),
+    defect(
+        "count too small",
+        SEAM,
+        "<MeshEdge etype=\"Edge2\" count=\"4\">3 16 16 17 17 18 18 19 19 4<",
+        &[(Code::ExtraContent, "count=\"4\">3 16")],
+    ),
+    defect(
+        "index 0",
+        ">3 16 16 17",
+        ">3 16 0 17",
+        &[(Code::BadIndex, ">3 16 0 17"), (Code::BrokenString, SEAM_STRING)],
+    ),
+    defect(
+        "index beyond the mesh",
+        ">3 16 16 17 17 18 18 19 19 4<",
+        ">3 16 16 17 17 18 18 19 19 400000<",
+        &[(Code::IndexBeyondMesh, "400000")],
+    ),
+    defect(
+        "not a number",
+        ">3 16 16 17",
+        ">3 16 16 x",
+        &[(Code::BadIndex, "16 x"), (Code::StrayVertex, "vref=\"16\" gref=\"9\"")],
+    ),
+    defect(
+        "unknown etype",
+        FIRST_RUN,
+        "<MeshFace etype=\"Tri6\" count=\"151\">",
+        &[(Code::UnknownType, "Tri6"), (Code::StrayVertex, "vref=\"207\""), (Code::StringWithoutSheet, SEAM_STRING)],
+    ),
+    defect(
+        "unknown format",
+        FIRST_RUN,
+        "<MeshFace etype=\"Tri3\" format=\"lzw\" count=\"151\">",
+        &[(Code::UnknownFormat, "lzw"), (Code::StrayVertex, "vref=\"207\""), (Code::StringWithoutSheet, SEAM_STRING)],
+    ),
+    defect(
+        "broken base64",
+        FIRST_RUN,
+        "<MeshFace etype=\"Tri3\" format=\"base64\" count=\"151\">",
+        &[(Code::BadBase64, "base64"), (Code::StrayVertex, "vref=\"207\""), (Code::StringWithoutSheet, SEAM_STRING)],
+    ),
+    defect(
+        "string with a gap",
+        ">3 16 16 17 17 18",
+        ">3 16 17 17 17 18",
+        &[
+            (Code::DegenerateCell, "16 17 17 17"),
+            (Code::EdgeNotInMesh, "16 17 17 17"),
+            (Code::BrokenString, SEAM_STRING),
+        ],
+    ),
+    defect(
+        "string that lacks an edge",
+        SEAM,
+        "<MeshEdge etype=\"Edge2\" count=\"4\">3 16 17 18 18 19 19 4<",
+        &[(Code::BrokenString, SEAM_STRING)],
+    ),
+    defect(
+        "edge that is none",
+        ">3 16 16 17 17 18",
+        ">3 16 16 18 18 17 17 18",
+        &[(Code::ExtraContent, "16 16 18"), (Code::EdgeNotInMesh, "16 16 18"), (Code::BrokenString, SEAM_STRING)],
+    ),
+    defect("missing attribute", "name=\"wall/face-2\" gref=\"2\"", "name=\"wall/face-2\"", &[]),
+    defect(
+        "missing gid",
+        "<GeometryReference gid=\"9\" ref",
+        "<GeometryReference ref",
+        &[
+            (Code::MissingAttribute, "ref=\"edge-5\""),
+            (Code::DanglingReference, SEAM_STRING),
+            (Code::DanglingReference, "gref=\"9\" dim"),
+        ],
+    ),
+    defect(
+        "missing vref",
+        "<ParamVertex vref=\"207\"",
+        "<ParamVertex",
+        &[(Code::MissingAttribute, "<ParamVertex gref")],
+    ),
+    defect("reference to nothing", "ref=\"face-2\"", "ref=\"face-22\"", &[(Code::UnknownReference, "face-22")]),
+    defect("not a reference", "ref=\"face-2\"", "ref=\"quilt 2\"", &[(Code::UnknownReference, "quilt 2")]),
+    defect(
+        "sheet on an edge",
+        "name=\"wall/face-2\" gref=\"2\"",
+        "name=\"wall/face-2\" gref=\"10\"",
+        &[(Code::WrongKind, "count=\"151\""), (Code::OffGeometry, "count=\"151\"")],
+    ),
+    defect(
+        "string on a vertex",
+        "name=\"edge-6\" gref=\"10\"",
+        "name=\"edge-6\" gref=\"18\"",
+        &[(Code::WrongKind, "count=\"19\""), (Code::OffGeometry, "count=\"19\"")],
+    ),
+    defect(
+        "sheet on another face",
+        "name=\"wall/face-2\" gref=\"2\"",
+        "name=\"wall/face-2\" gref=\"3\"",
+        &[(Code::OffGeometry, "count=\"151\"")],
+    ),
+    defect(
+        "string on another edge",
+        "name=\"edge-6\" gref=\"10\"",
+        "name=\"edge-6\" gref=\"12\"",
+        &[(Code::OffGeometry, "count=\"19\"")],
+    ),
+    defect(
+        "point at another vertex",
+        "<MeshPointReference gref=\"18\" count=\"1\">4<",
+        "<MeshPointReference gref=\"17\" count=\"1\">4<",
+        &[(Code::OffGeometry, "gref=\"17\" count=\"1\">4<")],
+    ),
+    defect(
+        "parameters of another place",
+        "vref=\"208\" gref=\"2\" dim=\"2\">2.8525",
+        "vref=\"208\" gref=\"2\" dim=\"2\">1.8525",
+        &[(Code::WrongParameters, "vref=\"208\"")],
+    ),
+    defect(
+        "entity bomb",
+        "<MeshFile filename=\"weeble.msh\"",
+        "<MeshFile filename=\"&lol9;\"",
+        &[(Code::Unreadable, "&lol9;")],
+    ),
+    defect(
+        "another mesh file",
+        "filename=\"weeble.msh\"",
+        "filename=\"C:\\meshes\\other.msh\"",
+        &[(Code::OtherMeshFile, "other.msh")],
+    ),
+    defect(
+        "another CAD file",
+        "filename=\"weeble.step\"",
+        "filename=\"other.step\"",
+        &[(Code::OtherCadFile, "other.step")],
+    ),
+    defect(
+        "geometry that cannot be read",
+        "filename=\"weeble.step\"",
+        "filename=\"weeble.nmb\"",
+        &[(Code::UnreadableGeometry, "weeble.nmb")],
+    ),
+    defect(
+        "wrong namespace",
+        "xmlns=\"https://cadence.com\"",
+        "xmlns=\"http://www.pointwise.com\"",
+        &[(Code::ForeignNamespace, "<MeshLink")],
+    ),
+];
+
+#[test]
+fn every_defect_is_found_at_its_line_and_nothing_else() {
+    let good = std::fs::read_to_string(fixture("weeble", "meshlink.xml")).unwrap();
+    let dir = tempfile::tempdir().unwrap();
+    let mut problems: Vec<String> = Vec::new();
+    for Defect { name, from, to, found: wanted } in DEFECTS {
+        assert!(good.contains(from), "{name}: {from:?} is not in the file");
+        let text = good.replacen(from, to, 1);
+        let path = dir.path().join("defect.xml");
+        std::fs::write(&path, &text).unwrap();
+        let validation = Validation::full("weeble", &path);
+        let wanted: Vec<(String, u32)> =
+            wanted.iter().map(|(code, needle)| (code.id().to_owned(), line_of(&text, needle))).collect();
+        let got = validation.found();
+        let missing = wanted.iter().filter(|one| !got.contains(one));
+        problems.extend(missing.map(|(code, line)| format!("{name}: {code} is not found at line {line}")));
+        // Where a whole run or id is lost there is one finding for each thing that is left without it: the first is named in the table.
+        let unwanted = got.iter().filter(|(code, _)| !wanted.iter().any(|(own, _)| own == code));
+        problems.extend(unwanted.map(|(code, line)| format!("{name}: {code} at line {line} is a false alarm")));
+        let clean =
+            wanted.iter().all(|(code, _)| Code::from_id(code).unwrap().severity() == linkage_schema::Severity::Note);
+        assert_eq!(validation.code, i32::from(!clean), "{name}");
+    }
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+/// A file of a case, changed, and what is found in it with the case's mesh and CAD.
+struct Spoilt {
+    dir: tempfile::TempDir,
+    text: String,
+}
+
+impl Spoilt {
+    fn new(case: &str, extension: &str, change: impl FnOnce(String) -> String) -> Spoilt {
+        let good = std::fs::read_to_string(fixture(case, extension)).unwrap();
+        let spoilt = Spoilt { dir: tempfile::tempdir().unwrap(), text: change(good.clone()) };
+        assert_ne!(spoilt.text, good, "nothing was spoilt");
+        std::fs::write(spoilt.path(), &spoilt.text).unwrap();
+        spoilt
+    }
+
+    fn path(&self) -> std::path::PathBuf {
+        self.dir.path().join("spoilt.xml")
+    }
+
+    /// The findings are these, at the lines of these needles, and no others.
+    #[track_caller]
+    fn has(&self, validation: &Validation, wanted: &[(Code, &str)]) {
+        let wanted: Vec<(String, u32)> =
+            wanted.iter().map(|(code, needle)| (code.id().into(), line_of(&self.text, needle))).collect();
+        assert_eq!(validation.found(), wanted, "{:#}", validation.json["findings"]);
+    }
+}
+
+/// Every index of the faces, edges and points moved, parameter vertices too.
+fn renumbered(text: &str, by: i64) -> String {
+    let moved = |word: &str| word.parse::<i64>().map_or(word.to_owned(), |n| (n + by).to_string());
+    let line = |line: &str| -> String {
+        let Some(open) = line.find('>').filter(|_| line.contains("<MeshEdge") || line.contains("<MeshPointRef")) else {
+            let indices = !line.trim().is_empty() && line.chars().all(|c| c.is_ascii_digit() || c == ' ');
+            let vertex = line.split_once("vref=\"").and_then(|(head, rest)| {
+                let (index, tail) = rest.split_once('"')?;
+                Some(format!("{head}vref=\"{}\"{tail}", moved(index)))
+            });
+            let all = || line.split(' ').map(moved).collect::<Vec<_>>().join(" ");
+            return vertex.unwrap_or_else(|| if indices { all() } else { line.to_owned() });
+        };
+        let (head, rest) = line.split_at(open + 1);
+        let (inside, tail) = rest.split_once('<').unwrap();
+        format!("{head}{}<{tail}", inside.split(' ').map(moved).collect::<Vec<_>>().join(" "))
+    };
+    text.lines().map(line).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn a_file_that_is_off_by_one_is_named_as_such_and_else_as_good_as_before() {
+    for (case, by) in [("weeble", 1), ("cylinder_bl", 1)] {
+        let spoilt = Spoilt::new(case, "meshlink.xml", |text| renumbered(&text, by));
+        let validation = Validation::full(case, &spoilt.path());
+        spoilt.has(&validation, &[(Code::IndexBase, "<MeshModelReference")]);
+        assert!(validation.json["findings"][0]["message"].as_str().unwrap().contains("counts points from 2"));
+    }
+    for case in ["weeble", "cylinder_bl"] {
+        let spoilt = Spoilt::new(case, "meshlink.xml", |text| renumbered(&text, -1));
+        let validation = Validation::full(case, &spoilt.path());
+        // Zeros are found where they stand; everything else follows from the base.
+        assert_eq!(validation.codes(), [Code::BadIndex.id(), Code::IndexBase.id()], "{case}");
+        let base = (Code::IndexBase.id().to_owned(), line_of(&spoilt.text, "<MeshModelReference"));
+        assert!(validation.found().contains(&base));
+    }
+}
+
+#[test]
+fn a_mesh_of_another_case_is_recognised() {
+    for (case, other) in
+        [("weeble", "torus"), ("torus", "weeble"), ("cylinder_bl", "sphere_shell"), ("weeble", "weeble_hybrid")]
+    {
+        let linkage = fixture(case, "meshlink.xml");
+        let text = std::fs::read_to_string(&linkage).unwrap();
+        let validation =
+            Validation::of(&linkage, &args!["--mesh", fixture(other, "msh"), "--cad", fixture(case, "step")]);
+        let wanted = [(Code::OtherMeshFile, "<MeshFile"), (Code::OtherMesh, "<MeshModelReference")];
+        let wanted = wanted.map(|(code, needle)| (code.id().to_owned(), line_of(&text, needle)));
+        assert_eq!(validation.found(), wanted, "{case} with the mesh of {other}");
+    }
+}
+
+#[test]
+fn broken_files_are_one_finding_at_their_place() {
+    let cut = Spoilt::new("weeble", "meshlink.xml", |text| text[..text.len() / 2].to_owned());
+    let validation = Validation::full("weeble", &cut.path());
+    assert_eq!(validation.found(), [(Code::Unreadable.id().to_owned(), 1 + cut.text.matches('\n').count() as u32)]);
+    for (text, line) in [
+        ("$MeshFormat\n", 1),
+        ("<?xml version='1.0'?>\n<VTKFile/>\n", 2),
+        ("<MeshLink version='1.0'>\n<GeometryFile filename='a'></MeshFile></MeshLink>", 2),
+    ] {
+        let spoilt = Spoilt::new("weeble", "meshlink.xml", |_| text.to_owned());
+        let validation = Validation::full("weeble", &spoilt.path());
+        assert_eq!(
+            (validation.found(), validation.code),
+            (vec![(Code::Unreadable.id().to_owned(), line)], 1),
+            "{text}"
+        );
+    }
+    for linkage in ["/nowhere/a.xml", "/"] {
+        let outcome = sagitta(args!["validate", linkage]).expect(2);
+        assert!(outcome.stderr.contains(linkage) && outcome.stdout.is_empty(), "{}", outcome.stderr);
+    }
+}
+
+#[test]
+fn faces_given_twice_left_out_or_inside() {
+    let twice = Spoilt::new("weeble", "meshlink.xml", |text| {
+        let at = text.find(FIRST_RUN).unwrap() + FIRST_RUN.len();
+        let first = text[at..].lines().nth(1).unwrap().trim().to_owned();
+        let turned = first.split(' ').collect::<Vec<_>>();
+        let turned = [turned[2], turned[0], turned[1]].join(" ");
+        let run = format!("<MeshFace etype=\"Tri3\">{turned}</MeshFace>\n      </MeshSheet>");
+        text.replacen("</MeshSheet>", &run, 1)
+    });
+    twice.has(&Validation::full("weeble", &twice.path()), &[(Code::RepeatedFace, "<MeshFace etype=\"Tri3\">")]);
+
+    let fewer = Spoilt::new("torus", "meshlink.xml", |text| {
+        let (head, tail) = text.split_once("count=\"330\">\n").unwrap();
+        format!("{head}count=\"329\">\n{}", tail.split_once('\n').unwrap().1)
+    });
+    fewer.has(&Validation::full("torus", &fewer.path()), &[(Code::PartlyCovered, "count=\"329\"")]);
+
+    // Nodes 1 and 2 are the far field's poles; a face of theirs with a wall node is none of the mesh.
+    let foreign = Spoilt::new("weeble", "meshlink.xml", |text| {
+        text.replacen("</MeshSheet>", "<MeshFace etype=\"Tri3\">1 2 3</MeshFace>\n</MeshSheet>", 1)
+    });
+    foreign.has(&Validation::full("weeble", &foreign.path()), &[(Code::NotInMesh, ">1 2 3<")]);
+}
+
+#[test]
+fn faces_inside_the_volume_say_so() {
+    let mesh = sagitta::formats::read(&fixture("cylinder_bl", "msh")).unwrap();
+    let boundary = sagitta::associate::Boundary::new(&mesh);
+    let block = mesh.blocks.iter().find(|block| block.cell.dimension() == 3).unwrap();
+    let inner = block.elements(mesh.order).find_map(|nodes| {
+        let mut faces = block.cell.faces().iter().map(|face| face.corners.iter().map(|&c| nodes[usize::from(c)]));
+        faces.find_map(|face| Some(face.collect::<Vec<_>>()).filter(|corners| boundary.face(corners).is_none()))
+    });
+    let tags: Vec<String> = inner.unwrap().iter().map(|n| mesh.node_tags[n.index()].to_string()).collect();
+    let spoilt = Spoilt::new("cylinder_bl", "meshlink.xml", |text| {
+        let run = format!("<MeshFace etype=\"Quad4\">{}</MeshFace>\n</MeshSheet>", tags.join(" "));
+        text.replacen("</MeshSheet>", &run, 1)
+    });
+    let validation = Validation::of(&spoilt.path(), &args!["--mesh", fixture("cylinder_bl", "msh")]);
+    spoilt.has(&validation, &[(Code::InteriorFace, "<MeshFace etype=\"Quad4\">")]);
+}
+
+#[test]
+fn the_other_side_of_a_thin_wing() {
+    // Upper and lower sheet change places; with a tolerance thicker than the wing only the side can tell.
+    let swapped = Spoilt::new("wing_sharp", "meshlink.xml", |text| {
+        let text = text.replacen("name=\"wall/face-1\" gref=\"1\"", "name=\"wall/face-1\" gref=\"2\"", 1);
+        text.replacen("name=\"wall/face-2\" gref=\"2\"", "name=\"wall/face-2\" gref=\"1\"", 1)
+    });
+    let files = args!["--mesh", fixture("wing_sharp", "msh"), "--cad", fixture("wing_sharp", "step")];
+    let off = Validation::of(&swapped.path(), &files);
+    assert_eq!(off.codes(), [Code::OffGeometry.id()]);
+    let loose: Vec<OsString> = files.into_iter().chain(args!["--tolerance", "0.2"]).collect();
+    let sides = Validation::of(&swapped.path(), &loose);
+    assert_eq!(sides.codes(), [Code::WrongSide.id()], "{:#}", sides.json["findings"]);
+    let lines: Vec<u32> = sides.found().into_iter().map(|(_, line)| line).collect();
+    let runs: Vec<u32> =
+        swapped.text.lines().zip(1..).filter(|(l, _)| l.contains("count=\"156\"")).map(|(_, n)| n).collect();
+    assert_eq!(lines, runs);
+}
+
+#[test]
+fn sharp_edges_inside_a_sheet() {
+    // The wall is one sheet on a group; without the string its rim may leave the edge.
+    let free = Spoilt::new("weeble", "grouped.meshlink.xml", |text| {
+        let from = text.find("<MeshString name=\"edge-6\"").unwrap();
+        let to = from + text[from..].find("</MeshString>").unwrap() + "</MeshString>".len();
+        format!("{}{}", &text[..from], &text[to..])
+    });
+    free.has(&Validation::full("weeble", &free.path()), &[(Code::SharpEdgeFree, "count=\"354\"")]);
+
+    // A node of the rim slides up the waist: the faces below it now reach over the edge.
+    let dir = tempfile::tempdir().unwrap();
+    let moved = dir.path().join("weeble.msh");
+    let mut mesh = sagitta::formats::read(&fixture("weeble", "msh")).unwrap();
+    let rim = mesh.node_tags.iter().position(|&tag| tag == 25).unwrap();
+    let waist = mesh.node_tags.iter().position(|&tag| tag == 39).unwrap();
+    let (x, up) = (mesh.points[rim], mesh.points[waist]);
+    // The waist is a surface of revolution about z: the same height and radius, turned.
+    let angle = x.y.atan2(x.x);
+    let radius = up.x.hypot(up.y);
+    mesh.points[rim] = glam::DVec3::new(radius * angle.cos(), radius * angle.sin(), up.z);
+    sagitta::formats::write(&moved, &mesh, &sagitta::formats::WriteOptions::default()).unwrap();
+    let linkage = fixture("weeble", "grouped.meshlink.xml");
+    let text = std::fs::read_to_string(&linkage).unwrap();
+    let validation = Validation::of(&linkage, &args!["--mesh", moved, "--cad", fixture("weeble", "step")]);
+    let crossed = (Code::SharpEdgeCrossed.id().to_owned(), line_of(&text, "count=\"354\""));
+    assert!(validation.found().contains(&crossed), "{:#}", validation.json["findings"]);
+    let off = (Code::OffGeometry.id().to_owned(), line_of(&text, "count=\"19\""));
+    assert!(validation.found().contains(&off), "{:#}", validation.json["findings"]);
+}
+
+#[test]
+fn another_unit_is_one_finding() {
+    let dir = tempfile::tempdir().unwrap();
+    let scaled = dir.path().join("weeble.msh");
+    let mut mesh = sagitta::formats::read(&fixture("weeble", "msh")).unwrap();
+    mesh.points.iter_mut().for_each(|x| *x *= 0.001);
+    sagitta::formats::write(&scaled, &mesh, &sagitta::formats::WriteOptions::default()).unwrap();
+    let linkage = fixture("weeble", "meshlink.xml");
+    let validation = Validation::of(&linkage, &args!["--mesh", scaled, "--cad", fixture("weeble", "step")]);
+    assert_eq!(validation.codes(), [Code::OtherScale.id()]);
+}
+
+#[test]
+fn notes_count_only_when_strict_and_text_names_file_line_and_remedy() {
+    let spoilt =
+        Spoilt::new("weeble", "meshlink.xml", |text| text.replace("filename=\"weeble.step\"", "filename=\"w.nmb\""));
+    let plain = sagitta(args!["validate", spoilt.path()]).expect(0).stdout;
+    sagitta(args!["validate", spoilt.path(), "--strict"]).expect(1);
+    let start = format!("{}:{}:3: note ML509: ", spoilt.path().display(), line_of(&spoilt.text, "<GeometryFile"));
+    assert!(plain.starts_with(&start) && plain.contains(Code::UnreadableGeometry.remedy()), "{plain}");
+}
+
+#[test]
+fn every_code_is_explained() {
+    let all = sagitta(["explain"]).expect(0).stdout;
+    for code in Code::ALL {
+        assert!(all.lines().any(|line| line.starts_with(code.id()) && line.contains(code.meaning())), "{code}");
+        let one = sagitta(["explain", &code.id().to_lowercase()]).expect(0).stdout;
+        assert!([code.id(), code.meaning(), code.remedy()].iter().all(|part| one.contains(part)), "{one}");
+    }
+    let outcome = sagitta(["explain", "ML999"]).expect(2);
+    assert!(outcome.stderr.contains("ML999"), "{}", outcome.stderr);
+}
+
+/// The real files, licensed by Cadence and no part of the project, where `SAGITTA_MESHLINK` says they are.
+#[test]
+fn the_real_files_are_clean_and_their_defects_are_found() {
+    let Some(folder) = std::env::var_os("SAGITTA_MESHLINK").filter(|folder| !folder.is_empty()) else {
+        warn("SAGITTA_MESHLINK is not set: Cadence's own files are NOT validated");
+        return;
+    };
+    let m6 = Path::new(&folder).join("oneraM6.xml");
+    for file in [&m6, &Path::new(&folder).join("sphere_ml.xml")] {
+        let validation = Validation::of(file, &[]);
+        assert_eq!(
+            (validation.codes(), validation.code),
+            (vec![Code::UnreadableGeometry.id().to_owned()], 0),
+            "{file:?}"
+        );
+    }
+    sphere_with_its_mesh(Path::new(&folder));
+    let good = std::fs::read_to_string(&m6).unwrap();
+    let dir = tempfile::tempdir().unwrap();
+    let first_count = &good[good.find(" count=\"").unwrap()..][..10];
+    let cases = [
+        ("gref=\"3\"", "gref=\"3333\"", Code::DanglingReference),
+        ("gid=\"2\"", "gid=\"1\"", Code::DuplicateId),
+        ("<GeometryGroup gid=\"6\">4 5<", "<GeometryGroup gid=\"6\">3 5<", Code::NestedGroup),
+        ("vref=\"1\" gref=\"2\"", "vref=\"1\" gref=\"3\"", Code::GroupAsEntity),
+        (first_count, " count=\"9999999", Code::CountTooLarge),
+        ("etype=\"Tri3\"", "etype=\"Tri3x\"", Code::UnknownType),
+        ("format=\"text\"", "format=\"words\"", Code::UnknownFormat),
+        ("<MeshSheet ", "<MeshSheets ", Code::Unreadable),
+        ("attid=\"2\" name", "attid=\"1\" name", Code::DuplicateId),
+        (" gid=\"1\" ", " ", Code::MissingAttribute),
+    ];
+    for (from, to, code) in cases {
+        assert!(good.contains(from), "{from}");
+        let text = good.replacen(from, to, 1);
+        let path = dir.path().join("worse.xml");
+        std::fs::write(&path, &text).unwrap();
+        let validation = Validation::of(&path, &[]);
+        // A changed id may stand earlier too: the line is that of the change.
+        let changed = 1 + good[..good.find(from).unwrap()].matches('\n').count() as u32;
+        let at = Some(changed).filter(|_| code != Code::Unreadable);
+        let hit = |(own, line): &(String, u32)| own == code.id() && at.is_none_or(|at| at == *line);
+        assert!(validation.found().iter().any(hit), "{from} -> {to}: {:?}", validation.codes());
+        assert_eq!(validation.code, 1);
+    }
+}
+
+/// `sphere_ml.xml` with its PLOT3D mesh.
+fn sphere_with_its_mesh(folder: &Path) {
+    let [linkage, mesh] = ["sphere_ml.xml", "sphere.x"].map(|name| folder.join(name));
+    if sagitta(args!["info", mesh]).code != Some(0) {
+        warn("PLOT3D is not read: sphere_ml.xml is NOT validated with its mesh");
+        return;
+    }
+    let more = args!["--mesh", mesh];
+    let validation = Validation::of(&linkage, &more);
+    let notes = [Code::UnknownMeshName.id(), Code::UnreadableGeometry.id()];
+    assert_eq!((validation.codes(), validation.code), (notes.map(str::to_owned).to_vec(), 0));
+    let coverage = validation.json["coverage"].as_array().unwrap();
+    assert!(coverage.len() == 6 && coverage.iter().all(|patch| patch["linked"] == 4), "{coverage:#?}");
+
+    let good = std::fs::read_to_string(&linkage).unwrap();
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("worse.xml");
+    let shifted = renumbered(&good, 1);
+    let cases = [
+        (shifted, "<MeshModelReference", Code::IndexBase),
+        (good.replacen("1 2 5 4", "1 2 5 44", 1), "1 2 5 44", Code::IndexBeyondMesh),
+        (good.replacen("1 2 5 4", "1 2 5 7", 1), "1 2 5 7", Code::NotInMesh),
+        (good.replacen("2 3 6 5", "1 2 5 4", 1), "1 2 5 4", Code::RepeatedFace),
+    ];
+    for (text, needle, code) in cases {
+        assert_ne!(text, good);
+        std::fs::write(&path, &text).unwrap();
+        let validation = Validation::of(&path, &more);
+        // Faces stand on lines of their own; the place of a finding is that of their run.
+        let line = line_of(&text, needle);
+        let hit = |(own, at): &(String, u32)| own == code.id() && (line.saturating_sub(2)..=line).contains(at);
+        assert!(validation.found().iter().any(hit), "{code} near line {line}: {:?}", validation.found());
+        assert_eq!(validation.code, 1);
+    }
+}
