@@ -5,9 +5,13 @@
 //! This test stands alone in its process: it reads the process' peak of address space.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+#[path = "common/random.rs"]
+mod random;
+
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use random::Random;
 use sagitta::formats::{self, ReadOptions};
 
 /// Mutations of each format; of CGNS.
@@ -17,21 +21,8 @@ const ALLOWANCE_KB: u64 = 64 << 10;
 /// The longest that a damaged file may take; the samples take milliseconds.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// Numbers that follow from a seed (SplitMix64, Steele et al. 2014).
-struct Dice(u64);
-
-impl Dice {
-    fn below(&mut self, n: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) % n as u64) as usize
-    }
-}
-
 /// Damages a file in one or two places.
-fn damage(content: &mut Vec<u8>, dice: &mut Dice) {
+fn damage(content: &mut Vec<u8>, dice: &mut Random) {
     for _ in 0..=dice.below(2) {
         let at = dice.below(content.len().max(1)).min(content.len().saturating_sub(1));
         // Half of the damage goes to the head, where the counts stand.
@@ -105,7 +96,7 @@ fn fuzz(format: &Format, seed: u64) {
     let samples = samples(format);
     let dir = tempfile::tempdir().unwrap();
     let options = ReadOptions { reader: env!("CARGO_BIN_EXE_sagitta").into() };
-    let mut dice = Dice(seed);
+    let mut dice = Random(seed);
     let (mut read, mut refused) = (0, 0);
     for n in 0..format.mutations {
         let (file, whole) = &samples[dice.below(samples.len())];

@@ -86,11 +86,14 @@ pub fn perturb(
     displacement = carried;
     ties.carry(&elevated.mesh.points, &mut displacement);
 
-    wall.extend(wall_faces(elevated, boundary, |f| planar(association.faces[f])));
-    let own_wall = roots::walls_of_their_own(elevated, |n| association.plane_of(hosts[n]).is_some());
+    let planes = wall_faces(elevated, boundary, |f| planar(association.faces[f]));
+    let mut on_plane = vec![false; linear];
+    planes.iter().flat_map(WallFace::corners).for_each(|n| on_plane[n.index()] = true);
+    let own_wall = roots::walls_of_their_own(elevated, |n| planar(hosts[n]), &on_plane);
     for (seed, own) in seeds.iter_mut().zip(own_wall) {
         *seed |= own;
     }
+    wall.extend(planes);
     let field = Field::new(elevated, &wall, &displacement, &seeds, &reach);
     let displacement = carry(&field, elevated, &displacement, |n| hosts[n] == Host::Free);
     sum(elevated, association, hosts, &displacement)

@@ -38,14 +38,21 @@ pub(super) fn roots(elevated: &Elevated, seeds: &[bool]) -> Vec<Option<u32>> {
 }
 
 /// Which linear nodes of planes are walls of their own: the shortest mesh edge there leaves the planes.
-pub(super) fn walls_of_their_own(elevated: &Elevated, in_plane: impl Fn(usize) -> bool) -> Vec<bool> {
+///
+/// `in_plane` tells which nodes a plane holds, `on_plane` which lie on one, its rim too: at a symmetry plane the shortest
+/// edges of the first layer lead to the rim, the wall's own curve.
+pub(super) fn walls_of_their_own(
+    elevated: &Elevated,
+    in_plane: impl Fn(usize) -> bool,
+    on_plane: &[bool],
+) -> Vec<bool> {
     let points = &elevated.mesh.points;
     let (starts, neighbours) = neighbours(&elevated.mesh, elevated.linear_nodes);
     let own_wall = |n: usize| {
         let around = &neighbours[starts[n] as usize..starts[n + 1] as usize];
         let length = |&&m: &&u32| points[n].distance(points[m as usize]);
         let nearest = around.iter().min_by(|a, b| length(a).total_cmp(&length(b)));
-        in_plane(n) && nearest.is_some_and(|&m| !in_plane(m as usize))
+        in_plane(n) && nearest.is_some_and(|&m| !on_plane[m as usize])
     };
     (0..elevated.linear_nodes).map(own_wall).collect()
 }

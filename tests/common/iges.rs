@@ -1,5 +1,5 @@
 //! Writes B-spline faces as an IGES file (entities 128), so that benchmarks and tests need no stored CAD.
-#![allow(unreachable_pub)] // each program includes it as a module of its own
+#![allow(dead_code, unreachable_pub)] // each program includes it as a module of its own
 
 use glam::DVec3;
 use std::fmt::Write;
@@ -21,6 +21,24 @@ impl Patch {
         Self { count, poles }
     }
 
+    /// Poles at the Greville abscissae: an affine map comes out as itself.
+    pub fn at_greville(count: [usize; 2], at: impl Fn(f64, f64) -> DVec3) -> Self {
+        let abscissae = |n: usize| -> Vec<f64> {
+            let knots: Vec<f64> = knots(n).collect();
+            (0..n).map(|i| knots[i + 1..i + 4].iter().sum::<f64>() / 3.0).collect()
+        };
+        let [us, vs] = count.map(abscissae);
+        Self { count, poles: vs.iter().flat_map(|&v| us.iter().map(move |&u| (u, v))).map(|(u, v)| at(u, v)).collect() }
+    }
+
+    /// The face at parameters of 0..=1.
+    pub fn point(&self, u: f64, v: f64) -> DVec3 {
+        let ([i, j], [a, b]) =
+            ([0, 1].map(|k| span(self.count[k], [u, v][k])), [blend(self.count[0], u), blend(self.count[1], v)]);
+        let pole = |k: usize, l: usize| self.poles[(j + l) * self.count[0] + i + k];
+        (0..4).flat_map(|l| (0..4).map(move |k| (k, l))).map(|(k, l)| pole(k, l) * (a[k] * b[l])).sum()
+    }
+
     /// The parameter data of entity 128.
     fn record(&self) -> String {
         let [n, m] = self.count;
@@ -39,6 +57,29 @@ impl Patch {
 fn knots(count: usize) -> impl Iterator<Item = f64> {
     let spans = (count - 3) as f64;
     (0..count + 4).map(move |i| ((i as f64 - 3.0) / spans).clamp(0.0, 1.0))
+}
+
+/// The first of the four poles that count at a parameter.
+fn span(count: usize, t: f64) -> usize {
+    ((t * (count - 3) as f64) as usize).min(count - 4)
+}
+
+/// Values there of the four B-splines that are not zero (de Boor).
+fn blend(count: usize, t: f64) -> [f64; 4] {
+    let knots: Vec<f64> = knots(count).collect();
+    let first = span(count, t) + 3;
+    let mut values = [1.0, 0.0, 0.0, 0.0];
+    for degree in 1..4 {
+        let mut rest = 0.0;
+        for k in 0..degree {
+            let (low, high) = (knots[first + k + 1 - degree], knots[first + k + 1]);
+            let share = values[k] / (high - low);
+            values[k] = rest + (high - t) * share;
+            rest = (t - low) * share;
+        }
+        values[degree] = rest;
+    }
+    values
 }
 
 /// Cuts a record into lines of at most `width` columns, at commas.
