@@ -82,13 +82,14 @@ impl Case {
         [self.band, self.band + 1].map(|b| MOST_SPACINGS.powf(b as f64 / BANDS as f64))
     }
 
-    /// Draws a sagitta in wall spacings, and an aspect ratio at which the facets can have it.
+    /// Draws a sagitta in wall spacings, and an aspect ratio at which the facets can have it; low ones more often, so that
+    /// every decade occurs.
     pub fn proportions(&self, random: &mut Random) -> (f64, f64) {
         let [from, to] = self.sagittas();
         // off the bounds by more than the accuracy with which the wall is bent
         let sagitta = random.decade(1.005 * from, 0.995 * to);
-        let [least, most] = ASPECT_RATIOS;
-        (sagitta, random.decade(least.max(sagitta / MOST_BENT), most))
+        let [least, most] = [ASPECT_RATIOS[0].max(sagitta / MOST_BENT), ASPECT_RATIOS[1]];
+        (sagitta, least * (most / least).powf(random.between(0.0, 1.0).powi(2)))
     }
 }
 

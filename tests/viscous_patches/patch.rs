@@ -61,7 +61,10 @@ impl Patch {
         let sagitta = grid.sagitta(&surface) * aspect_ratio;
         let heights = heights(1.0 / aspect_ratio, random);
         let layers = heights.len() - 1;
-        let transition = layers / 2 + random.below(layers - layers / 2);
+        // where pyramids stand on hexes, their layer must be thicker than the quadrilaterals are twisted
+        let thick = |k: &usize| heights[k + 1] - heights[*k] > 0.5 * spacings / aspect_ratio;
+        let first = (layers / 2..layers).find(thick).unwrap_or(layers - 1);
+        let transition = first + random.below(layers - first);
         let points = extrude(&grid, &grid.on(&surface), &heights);
         let cells = Cells::fill(case.kind, &grid, points, transition);
         let mesh = mesh(cells, &grid, form.split(), layers);
