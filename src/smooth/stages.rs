@@ -45,8 +45,9 @@ const FOCUS: f64 = 0.1;
 const PATIENCE: usize = 4;
 /// Rings of neighbours around them.
 const FOCUS_RINGS: usize = 4;
-/// Regularisation of determinants, as a share of what the worst is below [`LOW`] (after Garanzha et al.,
-/// doi:10.1145/3450626.3459847).
+/// Regularisation of determinants, as a share of what the worst is below [`LOW`], but for 1 at most (after Garanzha et al.,
+/// doi:10.1145/3450626.3459847). Without that end one element whose straight Jacobian is next to nothing somewhere (-9 times it
+/// on the torus at scale 0.5) takes the barrier from all others, and hundreds of them invert.
 const REGULARISATION: f64 = 0.5;
 
 /// What the user can set.
@@ -137,8 +138,14 @@ impl Summary {
         self.c_wcn.min(self.c_jac)
     }
 
+    /// One figure for both costs, in which the smaller counts more and yet the larger counts: where the CAD itself bounds the one
+    /// (a prism whose straight column leans on its wall cannot keep its shape on a curved one), the other still gains.
+    fn score(self) -> f64 {
+        if self.worst() > 0.0 { 2.0 / (1.0 / self.c_wcn + 1.0 / self.c_jac) } else { self.worst() }
+    }
+
     fn beats(self, other: Summary) -> bool {
-        self.inverted < other.inverted || (self.inverted == other.inverted && self.worst() > other.worst())
+        self.inverted < other.inverted || (self.inverted == other.inverted && self.score() > other.score())
     }
 }
 
@@ -230,17 +237,16 @@ impl Run<'_, '_> {
     /// One stage as the paper has it, from the best state so far: all elements below the threshold, until there are none;
     /// shape alone only as long as that gains something.
     fn papers_stage(&mut self, stage: Stage, x: &mut Vec<DVec3>) {
-        x.clone_from(&self.best.x);
-        self.costs.clone_from(&self.best.costs);
+        self.go_back(x);
         let mut idle = 0;
         while !self.stopped && self.sweeps < self.settings.max_sweeps && (stage == Stage::Full || idle < 2) {
-            let (before, first) = (self.lowest(stage), self.sweeps);
-            let active = activate(self.problem, &self.costs, stage, self.settings.threshold, RINGS);
+            let (before, first) = (self.score(stage), self.sweeps);
+            let active = activate(self.problem, &self.costs, stage, [self.settings.threshold; 2], RINGS);
             self.densify(&active, x);
             let patch = Patch::new(self.problem, &active, &self.density);
             self.round(stage, &patch, x);
             self.survey(&patch.elements, x);
-            idle = if self.lowest(stage) - before < PROGRESS { idle + 1 } else { 0 };
+            idle = if self.score(stage) - before < PROGRESS { idle + 1 } else { 0 };
             if self.sweeps == first {
                 break; // every node is above the threshold
             }
@@ -249,18 +255,16 @@ impl Run<'_, '_> {
 
     /// One stage, from the best state so far.
     fn stage(&mut self, stage: Stage, x: &mut Vec<DVec3>) {
-        x.clone_from(&self.best.x);
-        self.costs.clone_from(&self.best.costs);
+        self.go_back(x);
         let (mut idle, mut low_rings, mut focused) = (0, RINGS, false);
         while !self.stopped && self.sweeps < self.settings.max_sweeps {
-            let before = self.lowest(stage);
-            let low = before < LOW;
-            let (level, rings) = match (low, focused) {
-                (true, _) => (LOW, low_rings),
-                (false, true) => ((before + FOCUS).min(self.settings.threshold), FOCUS_RINGS),
-                (false, false) => (self.settings.threshold, RINGS),
+            let (before, low, focus) = (self.score(stage), self.lowest(stage) < LOW, self.focus());
+            let (levels, rings) = match (low, focused) {
+                (true, _) => ([LOW; 2], low_rings),
+                (false, true) => (focus, FOCUS_RINGS),
+                (false, false) => ([self.settings.threshold; 2], RINGS),
             };
-            let active = activate(self.problem, &self.costs, stage, level, rings);
+            let active = activate(self.problem, &self.costs, stage, levels, rings);
             if active.is_empty() {
                 break;
             }
@@ -268,7 +272,7 @@ impl Run<'_, '_> {
             let patch = Patch::new(self.problem, &active, &self.density);
             self.round(stage, &patch, x);
             self.survey(&patch.elements, x);
-            idle = if self.lowest(stage) - before < PROGRESS { idle + 1 } else { 0 };
+            idle = if self.score(stage) - before < PROGRESS { idle + 1 } else { 0 };
             if idle < if focused { PATIENCE } else { 2 } {
                 continue;
             }
@@ -277,16 +281,32 @@ impl Run<'_, '_> {
                 (true, _) if low_rings < MOST_RINGS => low_rings *= 2,
                 (false, false) if self.lowest(stage) + FOCUS < self.settings.threshold => {
                     focused = true;
-                    x.clone_from(&self.best.x);
-                    self.costs.clone_from(&self.best.costs);
+                    self.go_back(x);
                 }
                 _ => break,
             }
         }
     }
 
+    /// Back to the best state so far.
+    fn go_back(&mut self, x: &mut Vec<DVec3>) {
+        x.clone_from(&self.best.x);
+        self.costs.clone_from(&self.best.costs);
+    }
+
     fn lowest(&self, stage: Stage) -> f64 {
         self.costs.iter().map(|c| stage.cost(c)).fold(1.0, f64::min)
+    }
+
+    fn score(&self, stage: Stage) -> f64 {
+        let summary = Summary::of(&self.costs);
+        if stage == Stage::Shape { summary.c_wcn } else { summary.score() }
+    }
+
+    /// The levels, `C_WCN` and `C_JAC`, below which elements are within [`FOCUS`] of the worst of their component.
+    fn focus(&self) -> [f64; 2] {
+        let summary = Summary::of(&self.costs);
+        [summary.c_wcn, summary.c_jac].map(|worst| (worst + FOCUS).min(self.settings.threshold))
     }
 
     /// Takes the costs of changed elements, and keeps the state if it is the best.
@@ -322,7 +342,7 @@ impl Run<'_, '_> {
     /// Descends on a patch.
     fn round(&mut self, stage: Stage, patch: &Patch, x: &mut [DVec3]) {
         let alpha = self.settings.alpha.unwrap_or_else(|| quality::alpha(self.problem.order));
-        let delta = REGULARISATION * (LOW - self.lowest(stage)).max(0.0);
+        let delta = REGULARISATION * (LOW - self.lowest(stage)).clamp(0.0, 1.0);
         let (shape, jacobian) = if stage == Stage::Shape { (1.0, 0.0) } else { (alpha, 1.0 - alpha) };
         let weights = Weights { shape, jacobian, density: Density { emphasis: EMPHASIS, delta } };
         let cuts = patch.elements.iter().map(|&e| self.costs[e].cut).collect();
@@ -375,9 +395,10 @@ impl Stage {
     }
 }
 
-/// Elements below the level, and rings of elements around them.
-fn activate(problem: &Problem, costs: &[ElementCost], stage: Stage, level: f64, rings: usize) -> Vec<usize> {
-    let mut active: Vec<bool> = costs.iter().map(|c| stage.cost(c) < level).collect();
+/// Elements with a cost below its level (`C_WCN`, `C_JAC`), and rings of elements around them.
+fn activate(problem: &Problem, costs: &[ElementCost], stage: Stage, levels: [f64; 2], rings: usize) -> Vec<usize> {
+    let below = |c: &ElementCost| c.c_wcn < levels[0] || (stage == Stage::Full && c.c_jac < levels[1]);
+    let mut active: Vec<bool> = costs.iter().map(below).collect();
     for _ in 0..rings {
         let mut touched = vec![false; problem.node_count()];
         for e in (0..active.len()).filter(|&e| active[e]) {
