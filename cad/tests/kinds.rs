@@ -3,7 +3,7 @@
 
 mod common;
 
-use cad::{EdgeId, End, EntityId, FaceId, Group, Kind, Model, ReferenceError};
+use cad::{EdgeId, End, EntityId, FaceId, Group, Hint, Kind, Model, ReferenceError};
 use common::{Random, options, shape};
 use glam::DVec3;
 use opencascade_sys as sys;
@@ -179,19 +179,18 @@ fn hints_are_never_wrong_on_any_kind() {
     let group = Group::of_faces(&model, &all).unwrap();
     let mut random = Random(47);
     let xs: Vec<DVec3> = (0..500).map(|_| random.in_box(model.bounds().min, model.bounds().max)).collect();
-    let mut hint = group.closest(xs[0], None);
+    let mut hint = Hint::default();
     for (i, &x) in xs.iter().enumerate() {
         let plain = group.closest(x, None);
-        let hinted = group.closest(x, Some(&hint));
+        let hinted = group.closest(x, Some(&mut hint));
         assert!((plain.distance - hinted.distance).abs() < 1e-11 * model.diagonal(), "{i} {x}: {plain:?} {hinted:?}");
         // a walk of small moves: the chain of hints carries its clearance on
         let mut at = x;
-        hint = hinted;
         for _ in 0..4 {
             at += 1e-3 * model.diagonal() * (random.in_box(DVec3::ZERO, DVec3::ONE) - DVec3::splat(0.5));
-            hint = group.closest(at, Some(&hint));
+            let hinted = group.closest(at, Some(&mut hint));
             let plain = group.closest(at, None).distance;
-            assert!((plain - hint.distance).abs() < 1e-11 * model.diagonal(), "{i} {at}: {plain} {hint:?}");
+            assert!((plain - hinted.distance).abs() < 1e-11 * model.diagonal(), "{i} {at}: {plain} {hinted:?}");
         }
     }
 }

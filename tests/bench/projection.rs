@@ -6,7 +6,7 @@
 #[path = "../common/iges.rs"]
 mod iges;
 
-use cad::{FaceId, Foot, Group, Kind, Model, READER_SUBCOMMAND, ReadOptions};
+use cad::{FaceId, Group, Hint, Kind, Model, READER_SUBCOMMAND, ReadOptions};
 use glam::DVec3;
 use iges::Patch;
 use opencascade_sys as sys;
@@ -159,15 +159,17 @@ fn compare(
 ) {
     let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let (one, two) = (pool(1), pool(2));
-    let (ours, feet) = rate(xs.len(), |r| one.install(|| group.closest_batch(&xs[r], &[])));
-    let (pair, _) = rate(xs.len(), |r| two.install(|| group.closest_batch(&xs[r], &[])));
-    let hints: Vec<Option<Foot>> = feet.iter().copied().map(Some).collect();
+    let (ours, feet) = rate(xs.len(), |r| one.install(|| group.closest_batch(&xs[r], &mut [])));
+    let (pair, _) = rate(xs.len(), |r| two.install(|| group.closest_batch(&xs[r], &mut [])));
+    let mut hints = vec![Hint::default(); xs.len()];
+    group.closest_batch(xs, &mut hints);
     // a later sweep of the smoother: every point has moved a little, in any direction
     let mut random = Random(2);
     let mut shake = || 2.0 * random.unit() - 1.0;
     let moves = feet.iter().map(|foot| 0.02 * foot.distance * DVec3::new(shake(), shake(), shake()));
     let moved: Vec<DVec3> = xs.iter().zip(moves).map(|(x, by)| *x + by).collect();
-    let (hinted, _) = rate(xs.len(), |r| one.install(|| group.closest_batch(&moved[r.clone()], &hints[r])));
+    let (hinted, _) =
+        rate(xs.len(), |r| one.install(|| group.closest_batch(&moved[r.clone()], &mut hints[r].to_vec())));
     let (bare, quick) = rate(xs.len(), |r| xs[r].iter().map(|&x| group.closest_without_proof(x)).collect());
     let some = &xs[..case.global.min(xs.len())];
     let start = Instant::now();
@@ -205,7 +207,7 @@ fn weeble() {
     let group = Group::of_faces(&model, &faces).unwrap();
     let xs = queries(&model, &faces, 100_000, 0.005);
     let start = Instant::now();
-    let feet = group.closest_batch(&xs, &[]);
+    let feet = group.closest_batch(&xs, &mut []);
     let unproven = feet.iter().filter(|foot| !foot.is_proven()).count();
     let seconds = start.elapsed().as_secs_f64();
     println!(
