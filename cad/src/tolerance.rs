@@ -10,6 +10,9 @@ pub const ORTHOGONAL: f64 = 1e-10;
 /// A leaf smaller than this is not cut further: all its points are the same point. Fraction of the diagonal.
 pub const POINT: f64 = 1e-10;
 
+/// Coordinates as large as this are infinite: OCCT's own bound is `2e100`, and squares must not overflow. In the unit of the file.
+pub const INFINITE: f64 = 1e100;
+
 /// Newton's last relative step (fraction of the leaf's parameter range).
 pub const NEWTON_STEP: f64 = 1e-14;
 

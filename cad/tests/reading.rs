@@ -143,6 +143,23 @@ fn crash_and_hang_of_the_child_are_errors() {
     assert!(Model::read(&path, &poor).is_err());
 }
 
+/// OCCT reads such poles without a word.
+#[test]
+fn poles_that_are_no_numbers_are_refused_by_entity() {
+    let text = std::fs::read_to_string(common::shape_path("kinds.brep")).unwrap();
+    let dir = tempfile::tempdir().unwrap();
+    let pole = "0.54574911354964839";
+    let places: Vec<usize> = text.match_indices(pole).map(|(at, _)| at).collect();
+    assert!(places.len() > 1, "the surface itself and the basis of its offset");
+    for (i, number) in ["nan", "inf", "1e999", "-1e200"].iter().cycle().take(4 * places.len()).enumerate() {
+        let at = places[i / 4];
+        let path = dir.path().join(format!("{i}.brep"));
+        std::fs::write(&path, format!("{}{number}{}", &text[..at], &text[at + pole.len()..])).unwrap();
+        let told = Model::read(&path, &options()).expect_err(number).to_string();
+        assert!(told.contains(&format!("{i}.brep")) && told.contains("face:") && told.contains("coordinate"), "{told}");
+    }
+}
+
 /// What the child warned of before it hung is the likely cause.
 #[test]
 fn a_hang_names_the_suspects() {
