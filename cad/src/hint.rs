@@ -18,7 +18,7 @@ use glam::{DVec3, Vec3};
 const RIVALS: usize = 6;
 
 /// Parts that one search keeps apart; those beyond are thrown together.
-const FLOORS: usize = 32;
+const FLOORS: usize = 24;
 
 /// See [`enough`].
 const ENOUGH_OF_DISTANCE: f64 = 0.1;

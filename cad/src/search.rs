@@ -56,13 +56,17 @@ impl Group {
     /// Who asks again and again for a point that moves little passes the same `hint` each time: it makes queries faster, never wrong,
     /// and the first one a little slower.
     pub fn closest(&self, x: DVec3, hint: Option<&mut Hint>) -> Foot {
-        let mut floors = Floors::new();
+        if let Some(hint) = hint {
+            return self.closest_from(x, hint);
+        }
         let mut search = Search::new(self, x);
-        let Some(hint) = hint else {
-            search.visit_all(self.seed(x));
-            return search.finish().foot;
-        };
-        search.floors = Some(&mut floors);
+        search.visit_all(self.seed(x));
+        search.finish().foot
+    }
+
+    fn closest_from(&self, x: DVec3, hint: &mut Hint) -> Foot {
+        let mut floors = Floors::new();
+        let mut search = Search { floors: Some(&mut floors), ..Search::new(self, x) };
         if hint.group == self.number {
             search.visit_from(hint);
         } else {

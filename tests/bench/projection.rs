@@ -168,8 +168,16 @@ fn compare(
     let mut shake = || 2.0 * random.unit() - 1.0;
     let moves = feet.iter().map(|foot| 0.02 * foot.distance * DVec3::new(shake(), shake(), shake()));
     let moved: Vec<DVec3> = xs.iter().zip(moves).map(|(x, by)| *x + by).collect();
-    let (hinted, _) =
-        rate(xs.len(), |r| one.install(|| group.closest_batch(&moved[r.clone()], &mut hints[r].to_vec())));
+    // there and back: each run has the hints of the one before
+    let mut there = false;
+    let (hinted, carried) = rate(xs.len(), |r| {
+        there ^= r.start == 0;
+        let at = if there { &moved[r.clone()] } else { &xs[r.clone()] };
+        one.install(|| group.closest_batch(at, &mut hints[r]))
+    });
+    let afresh = two.install(|| group.closest_batch(if there { &moved } else { xs }, &mut []));
+    let afresh: Vec<f64> = afresh.iter().map(|foot| foot.distance).collect();
+    let misled = wrong(carried.iter().map(|foot| foot.distance), &afresh, diagonal);
     let (bare, quick) = rate(xs.len(), |r| xs[r].iter().map(|&x| group.closest_without_proof(x)).collect());
     let some = &xs[..case.global.min(xs.len())];
     let start = Instant::now();
@@ -179,7 +187,11 @@ fn compare(
     let best_of_all: Vec<f64> = best.iter().zip(&theirs).map(|(a, b)| a.min(*b)).collect();
     let unproven = feet.iter().filter(|foot| !foot.is_proven()).count();
     println!("  {name:4} ours {ours:9.3e}/s, {unproven} of {} not proven", xs.len());
-    println!("       hinted {hinted:9.3e}/s = {:.2} x; two threads {:.2} x one", hinted / ours, pair / ours);
+    println!(
+        "       hinted {hinted:9.3e}/s = {:.2} x, {misled} wrong; two threads {:.2} x one",
+        hinted / ours,
+        pair / ours
+    );
     println!(
         "       seed + Newton {bare:9.3e}/s: ours is {:.2} x; OCCT global {global:9.3e}/s: ours is {:.0} x",
         ours / bare,
