@@ -49,6 +49,10 @@ pub const TINY: f64 = 1e-6;
 /// A pcurve that lies farther from its edge than this many tolerances of the edge is called inconsistent.
 pub const TRIM_GAP: f64 = 2.0;
 
+/// ... and one that is farther off than this is called so whatever its tolerance: OCCT widens tolerances until they fit. Fraction of the
+/// diagonal.
+pub const LOOSE: f64 = 1e-3;
+
 /// Sampled derivative bounds of a leaf are widened by this factor.
 pub const BOUND_SAFETY: f64 = 1.5;
 
