@@ -43,7 +43,7 @@ pub enum ReferenceError {
         /// The CAD file.
         model: String,
         /// All that answer.
-        candidates: Vec<EntityId>,
+        candidates: Box<[EntityId]>,
     },
 }
 
@@ -91,7 +91,7 @@ impl Model {
 
     fn ambiguous(&self, reference: &str, candidates: Vec<EntityId>) -> ReferenceError {
         let model = self.path().display().to_string();
-        ReferenceError::Ambiguous { reference: reference.to_owned(), model, candidates }
+        ReferenceError::Ambiguous { reference: reference.to_owned(), model, candidates: candidates.into() }
     }
 
     /// Entities of every kind with their labels.
