@@ -8,6 +8,7 @@ use cad::ReadOptions;
 use clap::Args;
 
 use super::form::Form;
+use super::keeper::Keeper;
 use super::progress::Teller;
 use super::trace::Trace;
 use super::{DONE, Failure, GIVEN_UP, NOT_CERTIFIED, STOPPED, print, write_json};
@@ -59,6 +60,10 @@ pub(super) struct Options {
     /// Keep nodes on curved walls where projection put them
     #[arg(long)]
     freeze_walls: bool,
+    /// Curve this many layers of elements off curved walls, and leave those beyond straight; `auto` lets the walls' displacement
+    /// end where it has fallen to nothing
+    #[arg(long, value_name = "auto|N", default_value = "auto", value_parser = layers)]
+    curve_layers: Layers,
     /// Elements whose cost is below are worked on (0 to 1)
     #[arg(long, value_name = "0..1", default_value_t = 0.8, value_parser = share)]
     threshold: f64,
@@ -91,6 +96,15 @@ pub(super) struct Options {
     /// Seconds after which smoothing ends; what is there by then is certified and written
     #[arg(long, value_name = "S", value_parser = positive)]
     time_limit: Option<f64>,
+    /// Keep the state of the smoothing in this file, to go on from after a crash or a full queue
+    #[arg(long, value_name = "FILE")]
+    checkpoint: Option<PathBuf>,
+    /// Sweeps from one checkpoint to the next; it is written at the end of the round of 10 sweeps
+    #[arg(long, value_name = "N", default_value_t = 20, requires = "checkpoint")]
+    checkpoint_every: usize,
+    /// Go on from a checkpoint, to the same bytes as without the interruption
+    #[arg(long, value_name = "FILE")]
+    resume: Option<PathBuf>,
     /// No progress on stderr
     #[arg(short, long)]
     quiet: bool,
@@ -99,6 +113,10 @@ pub(super) struct Options {
 /// The factor of `--cad-scale`; `None` is `auto`.
 #[derive(Clone, Copy, Debug)]
 struct Scale(Option<f64>);
+
+/// The number of `--curve-layers`; `None` is `auto`.
+#[derive(Clone, Copy, Debug)]
+struct Layers(Option<NonZeroUsize>);
 
 fn order(text: &str) -> Result<Order, String> {
     let wrong = || format!("{text:?} is not an order: give 2, 3 or 4");
@@ -119,6 +137,14 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
 fn share(text: &str) -> Result<f64, String> {
     let value = text.parse::<f64>().ok().filter(|v| (0.0..=1.0).contains(v));
     value.ok_or_else(|| format!("{text:?} is not between 0 and 1"))
+}
+
+fn layers(text: &str) -> Result<Layers, String> {
+    if text == "auto" {
+        return Ok(Layers(None));
+    }
+    let number = text.parse::<NonZeroUsize>();
+    number.map(|number| Layers(Some(number))).map_err(|_| format!("{text:?} is neither auto nor a number from 1"))
 }
 
 fn engine(text: &str) -> Result<smooth::Engine, String> {
@@ -145,6 +171,7 @@ impl Options {
             max_offset: self.max_offset,
             freeze_linear: self.freeze_linear,
             freeze_walls: self.freeze_walls,
+            curve_layers: self.curve_layers.0,
             cad_scale: self.cad_scale.0,
             reading: ReadOptions { timeout: Duration::from_secs_f64(self.cad_timeout), ..ReadOptions::default() },
             smoothing: smooth::Settings {
@@ -154,6 +181,7 @@ impl Options {
                 survey_factor: usize::from(self.survey_factor),
                 engine: self.engine,
             },
+            resume: self.resume.clone(),
         }
     }
 }
@@ -163,7 +191,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     if let Some(output) = &options.output {
         formats::check_output(output)?;
     }
-    for path in options.report.iter().chain(&options.trace) {
+    for path in options.report.iter().chain(&options.trace).chain(&options.checkpoint) {
         formats::check_folder(path)?;
     }
     if let Some(threads) = options.threads {
@@ -176,7 +204,11 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let limit = options.time_limit.map(Duration::from_secs_f64);
     let mut teller = Teller::new(options.quiet).stoppable(limit)?;
     let mut trace = Trace::new(&mut teller);
-    let curved = pipeline::curve(&job, &mut trace);
+    let mut keeper = Keeper::new(&mut trace, options.checkpoint.clone(), options.checkpoint_every);
+    let curved = pipeline::curve(&job, &mut keeper);
+    if let Some(failure) = keeper.failure {
+        eprintln!("sagitta: the last checkpoint was not written: {failure}");
+    }
     if let (Some(path), Ok(curved)) = (&options.trace, &curved) {
         trace.write(path, &curved.smoothed)?;
     }
