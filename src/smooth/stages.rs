@@ -9,6 +9,8 @@
 //! the best state of all rounds is kept: fewest inverted elements first, then the largest smallest cost.
 
 use glam::DVec3;
+use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
 use super::density::Density;
 use super::descend::descend;
@@ -121,8 +123,7 @@ pub struct Summary {
 impl Smoothed {
     /// Takes the costs anew, after nodes were moved by others.
     pub fn survey(&mut self, problem: &Problem, x: &[DVec3], survey_factor: usize) {
-        let all: Vec<usize> = (0..problem.element_count()).collect();
-        self.costs = problem.costs(&Kernels::new(problem, problem.order.get() * survey_factor), x, &all);
+        self.costs = problem.all_costs(&Kernels::new(problem, problem.order.get() * survey_factor), x);
         self.end = Summary::of(&self.costs);
     }
 }
@@ -161,16 +162,15 @@ pub fn smooth(
 ) -> Smoothed {
     let surveys: Vec<Kernels> =
         factors(settings.survey_factor).iter().map(|f| Kernels::new(problem, problem.order.get() * f)).collect();
-    let all: Vec<usize> = (0..problem.element_count()).collect();
-    let costs = problem.costs(&surveys[surveys.len() - 1], x, &all);
+    let costs = problem.all_costs(&surveys[surveys.len() - 1], x);
     let start = Summary::of(&costs);
     let mut run = Run {
         problem,
         constraint,
         settings,
         surveys,
-        density: vec![0; all.len()],
-        best: Best { summary: start, costs: costs.clone(), x: x.clone() },
+        density: vec![0; costs.len()],
+        best: Best::is_now(start),
         costs,
         pace: Pace::new(if start.c_wcn <= 0.0 { Stage::Shape } else { Stage::Full }),
         sweeps: 0,
@@ -181,15 +181,37 @@ pub fn smooth(
         run.resume(checkpoint, x);
     }
     run.stages(x);
-    *x = run.best.x;
-    Smoothed { sweeps: run.sweeps, stopped: run.stopped, costs: run.best.costs, start, end: run.best.summary }
+    run.go_back(x);
+    Smoothed { sweeps: run.sweeps, stopped: run.stopped, costs: run.costs, start, end: run.best.summary }
 }
 
-/// The best state so far.
+/// The best state so far, as its difference from the present one: most nodes never move.
 struct Best {
     summary: Summary,
-    costs: Vec<ElementCost>,
-    x: Vec<DVec3>,
+    places: FxHashMap<u32, DVec3>,
+    costs: FxHashMap<u32, ElementCost>,
+}
+
+impl Best {
+    /// The present state is the best.
+    fn is_now(summary: Summary) -> Best {
+        Best { summary, places: FxHashMap::default(), costs: FxHashMap::default() }
+    }
+
+    /// Notes what the nodes and elements of a patch are before they change.
+    fn note(&mut self, patch: &Patch, x: &[DVec3], costs: &[ElementCost]) {
+        for (&node, _) in patch.nodes.iter().zip(&patch.movable).filter(|(_, movable)| **movable) {
+            self.places.entry(node.index() as u32).or_insert(x[node.index()]);
+        }
+        for &e in &patch.elements {
+            self.costs.entry(e as u32).or_insert(costs[e]);
+        }
+    }
+
+    fn restore(&mut self, x: &mut [DVec3], costs: &mut [ElementCost]) {
+        self.places.drain().for_each(|(node, place)| x[node as usize] = place);
+        self.costs.drain().for_each(|(e, cost)| costs[e as usize] = cost);
+    }
 }
 
 /// What a stage works on.
@@ -314,6 +336,7 @@ impl Run<'_, '_> {
         let before = self.score();
         self.densify(active, x);
         let patch = Patch::new(self.problem, active, &self.density);
+        self.best.note(&patch, x, &self.costs);
         self.descend(&patch, x);
         self.survey(&patch.elements, x);
         self.pace.idle = if self.score() - before < PROGRESS { self.pace.idle + 1 } else { 0 };
@@ -323,28 +346,36 @@ impl Run<'_, '_> {
     fn keep(&mut self, x: &[DVec3]) {
         if self.goes_on() {
             let (pace, sweeps) = (self.pace, self.sweeps);
-            let (density, x, best) = ((&self.density[..]).into(), x.into(), (&self.best.x[..]).into());
+            let best = self.best.places.iter().map(|(&node, &place)| (node, place)).collect();
+            let (density, x) = ((&self.density[..]).into(), x.into());
             self.watch.checkpoint(&Checkpoint { pace, sweeps, density, x, best });
         }
     }
 
     fn resume(&mut self, checkpoint: Checkpoint, x: &mut Vec<DVec3>) {
         let closing = &self.surveys[self.surveys.len() - 1];
-        let all: Vec<usize> = (0..self.problem.element_count()).collect();
-        self.best.x = checkpoint.best.into_owned();
-        self.best.costs = self.problem.costs(closing, &self.best.x, &all);
-        self.best.summary = Summary::of(&self.best.costs);
+        let mut best = checkpoint.x.to_vec();
+        for (&node, &place) in &checkpoint.best {
+            best[node as usize] = place;
+        }
+        let costs = self.problem.all_costs(closing, &best);
         *x = checkpoint.x.into_owned();
-        self.costs = self.problem.costs(closing, x, &all);
+        self.costs = self.problem.all_costs(closing, x);
+        self.best = Best::is_now(Summary::of(&costs));
+        for node in (0..best.len()).filter(|&n| best[n] != x[n]) {
+            self.best.places.insert(node as u32, best[node]);
+        }
+        for e in (0..costs.len()).filter(|&e| costs[e] != self.costs[e]) {
+            self.best.costs.insert(e as u32, costs[e]);
+        }
         let densest = (self.surveys.len() - 1) as u8;
         self.density = checkpoint.density.iter().map(|&density| density.min(densest)).collect();
         (self.pace, self.sweeps) = (checkpoint.pace, checkpoint.sweeps);
     }
 
     /// Back to the best state so far.
-    fn go_back(&mut self, x: &mut Vec<DVec3>) {
-        x.clone_from(&self.best.x);
-        self.costs.clone_from(&self.best.costs);
+    fn go_back(&mut self, x: &mut [DVec3]) {
+        self.best.restore(x, &mut self.costs);
     }
 
     fn lowest(&self) -> f64 {
@@ -365,15 +396,12 @@ impl Run<'_, '_> {
     /// Takes the costs of changed elements, and keeps the state if it is the best.
     fn survey(&mut self, elements: &[usize], x: &[DVec3]) {
         let closing = &self.surveys[self.surveys.len() - 1];
-        for (&e, cost) in elements.iter().zip(self.problem.costs(closing, x, elements)) {
+        for (&e, cost) in elements.iter().zip(self.problem.costs(closing, x, elements.par_iter().copied())) {
             self.costs[e] = cost;
         }
         let summary = Summary::of(&self.costs);
         if summary.beats(self.best.summary) {
-            self.best.summary = summary;
-            self.best.costs.clone_from(&self.costs);
-            self.best.x.clear();
-            self.best.x.extend_from_slice(x);
+            self.best = Best::is_now(summary);
         }
     }
 
@@ -383,7 +411,7 @@ impl Run<'_, '_> {
         for own in 0..densest {
             let seen = |&e: &usize| self.density[e] == own && self.costs[e].c_jac < self.settings.threshold;
             let elements: Vec<usize> = active.iter().copied().filter(seen).collect();
-            let sights = self.problem.costs(&self.surveys[usize::from(own)], x, &elements);
+            let sights = self.problem.costs(&self.surveys[usize::from(own)], x, elements.par_iter().copied());
             for (&e, sight) in elements.iter().zip(&sights) {
                 if sight.c_jac - self.costs[e].c_jac > BLIND {
                     self.density[e] = own + 1;
