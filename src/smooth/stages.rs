@@ -296,7 +296,7 @@ impl Run<'_, '_> {
 
     /// One stage as the paper has it: all elements below the threshold, until there are none; shape alone only as long as that
     /// gains something.
-    fn papers_stage(&mut self, x: &mut Vec<DVec3>) {
+    fn papers_stage(&mut self, x: &mut [DVec3]) {
         let stage = self.pace.stage;
         while self.goes_on() && (stage == Stage::Full || self.pace.idle < 2) {
             let first = self.sweeps;
@@ -373,7 +373,7 @@ impl Run<'_, '_> {
     }
 
     /// One round: a survey dense enough, a descent, and what it gained.
-    fn round(&mut self, active: &[usize], x: &mut Vec<DVec3>) {
+    fn round(&mut self, active: &[usize], x: &mut [DVec3]) {
         let before = self.score();
         self.densify(active, x);
         let patch = Patch::new(self.problem, active, &self.density);
