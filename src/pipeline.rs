@@ -1,4 +1,27 @@
 //! The order of the steps, from files in to a curved mesh and its report.
+//!
+//! # Memory
+//!
+//! What a mesh of tets takes at P2, in bytes a node of the curved mesh (0.127 linear nodes and 0.74 tets a node), at the time of the
+//! peak, when the report is made. `wing_sharp --scale 5 --quick` (5.85 million nodes, 4.33 million tets) peaks at 1.09 GB, 186 bytes a
+//! node, linear mesh, CAD and program included.
+//!
+//! | array | bytes |
+//! |---|---|
+//! | places, and straight places: 2 x `DVec3` | 48 |
+//! | nodes of the elements: 10 x `u32` a tet | 30 |
+//! | numbers in the file: `u64` a node and an element | 14 |
+//! | entity of each node | 12 |
+//! | edges: 2 ends, first new node, 3 x `u32` | 10 |
+//! | costs of the elements: 32 a tet | 24 |
+//! | proven minima: `f64` a tet | 6 |
+//! | elements around the corners, for turning angles: 4 x `u32` a tet | 12 |
+//! | boundary: hosts, displacements, association | 8 |
+//! | CAD, code, allocator | 22 |
+//!
+//! Smoothing takes more for *active* nodes only (none in that case): a gradient and a Hessian block (96 bytes) for each node of each
+//! active element and again for each node, the inverse block (72), and 8 pairs of steps and gradient changes (48 each): 1.3 kB an
+//! active node at P2.
 
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
