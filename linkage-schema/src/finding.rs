@@ -158,6 +158,8 @@ codes! {
     NotPeriodic = "ML413", Error, "correct the transform, or what it pairs";
     /// A linked point that is on no boundary face.
     StrayPoint = "ML414", Warning, "correct the index";
+    /// A mesh model that is called as no zone of the mesh file is; what it links is not checked.
+    UnknownZone = "ML415", Error, "call the model as the zone whose points it counts: /Base/zone, or the zone's name";
     /// A reference to nothing in the CAD file, or to several entities of it.
     UnknownReference = "ML501", Error, "write face-N, edge-N, vertex-N, step:#N, iges:DN or name:NAME as the CAD file has it";
     /// A reference to an entity of the wrong kind: sheets lie on faces, strings on edges or faces.
@@ -174,8 +176,8 @@ codes! {
     SharpEdgeCrossed = "ML507", Warning, "mesh up to the edge, and link the mesh edges on it by a string";
     /// Mesh edges inside one sheet that lie on a sharp edge of the CAD, with no string that holds them there.
     SharpEdgeFree = "ML508", Warning, "link the mesh edges on it by a string";
-    /// Geometry in a format that OpenCASCADE cannot read; what is linked to it is not compared with CAD.
-    UnreadableGeometry = "ML509", Note, "give the same geometry as STEP, IGES or BREP, with references that it has";
+    /// Geometry in a format that OpenCASCADE cannot read, or in another file than the given one; what is linked to it is not compared with CAD.
+    UnreadableGeometry = "ML509", Note, "give the same geometry in one file of STEP, IGES or BREP, with references that it has";
     /// The CAD file that was given is not the one that the linkage names.
     OtherCadFile = "ML510", Warning, "make sure that the references mean the same entities in this file";
     /// CAD and mesh differ in size by a factor between units, or lie apart.

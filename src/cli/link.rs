@@ -71,12 +71,12 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
             cad_size: model.diagonal(),
         }));
     }
-    let document = associate::document(&claims, &mesh, &boundary, &model, &options.mesh)?;
+    let written = associate::document(&claims, &mesh, &boundary, &model, &options.mesh)?;
     let mut text = Vec::new();
-    linkage_schema::write(&document, &mut text)?;
+    linkage_schema::write(&written.document, &mut text)?;
     formats::write_bytes(&options.output, &text)?;
     let mut summary = associate::summary(source, &mesh, &boundary, &model, &claims, inference.as_ref());
-    summary.notes.extend(mesh.notes.iter().cloned().chain(model.losses()));
+    summary.notes.extend(mesh.notes.iter().cloned().chain(model.losses()).chain(written.notes));
     if let Some(path) = &options.report {
         write_json(path, &summary)?;
     }

@@ -41,11 +41,14 @@ pub(super) fn same_scale(
     findings: &mut Findings,
 ) -> bool {
     let mut claims = Claims::default();
-    for link in models.iter().flat_map(|links| &links.sheets).flat_map(|sheet| &sheet.faces) {
-        let items: Vec<usize> = link.run.faces().filter_map(|face| linked.face(face)).collect();
-        let entities = geometry.of(link.target.as_deref());
-        if !items.is_empty() && !entities.is_empty() {
-            claims.sheets.push(Claimed { label: String::new(), items, entities });
+    for links in models {
+        let linked = linked.within(links.model);
+        for link in links.sheets.iter().flat_map(|sheet| &sheet.faces) {
+            let items: Vec<usize> = link.run.faces().filter_map(|face| linked.face(face)).collect();
+            let entities = geometry.of(link.target.as_deref());
+            if !items.is_empty() && !entities.is_empty() {
+                claims.sheets.push(Claimed { label: String::new(), items, entities });
+            }
         }
     }
     let (Some(first), false) = (models.first(), claims.sheets.is_empty()) else { return true };
@@ -67,9 +70,10 @@ pub(super) fn check(
     tolerance: f64,
     findings: &mut Findings,
 ) -> [Vec<Measured>; 3] {
-    let ruler = Ruler { linked, model, geometry, tolerance };
     let [mut sheets, mut strings, mut points]: [Vec<Measured>; 3] = Default::default();
     for links in models {
+        let linked = &linked.within(links.model);
+        let ruler = Ruler { linked, model, geometry, tolerance };
         for sheet in &links.sheets {
             for link in &sheet.faces {
                 let nodes =

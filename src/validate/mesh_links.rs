@@ -10,13 +10,14 @@ use crate::mesh::NodeId;
 
 pub(super) fn check(linked: &LinkedMesh<'_>, models: &[&ModelLinks<'_>], findings: &mut Findings) {
     let mut inner = None;
-    let linked_faces: FxHashSet<usize> = models
-        .iter()
-        .flat_map(|links| &links.sheets)
-        .flat_map(|sheet| &sheet.faces)
-        .flat_map(|link| link.run.faces().filter_map(|face| linked.face(face)))
-        .collect();
+    let mut linked_faces: FxHashSet<usize> = FxHashSet::default();
     for links in models {
+        let linked = linked.within(links.model);
+        let runs = links.sheets.iter().flat_map(|sheet| &sheet.faces).map(|link| link.run);
+        linked_faces.extend(runs.flat_map(|run| run.faces()).filter_map(|face| linked.face(face)));
+    }
+    for links in models {
+        let linked = &linked.within(links.model);
         links.sheets.iter().for_each(|sheet| faces(linked, sheet, &mut inner, findings));
         links.strings.iter().for_each(|string| edges(linked, string, &linked_faces, findings));
         for point in &links.points {
@@ -36,7 +37,7 @@ fn beyond(linked: &LinkedMesh<'_>, indices: &[u32], who: &str, origin: Origin, f
             let count = 1 + missing.count();
             format!(
                 "{who} has {count} indices without a node, the first is {first}; the mesh's go up to {}",
-                linked.last
+                linked.last()
             )
         });
     }

@@ -27,7 +27,7 @@ use cad::{Aabb, Model, ReadOptions};
 use linkage_schema::{Code, Findings, ModelLinks, Position, ReadError, Resolution, Severity};
 use serde::Serialize;
 
-use crate::associate::{Boundary, ON_CAD, same_file, sides};
+use crate::associate::{Boundary, Numbering, ON_CAD, models_of, sides};
 use crate::formats;
 use crate::mesh::Mesh;
 pub use coverage::Coverage;
@@ -189,7 +189,9 @@ pub fn validate(job: &Job) -> Result<Validation, ValidateError> {
     let boundary = mesh.as_ref().map(Boundary::new).unwrap_or_default();
     if let Some(mesh) = &mesh {
         let sides = sides(mesh, &boundary);
-        let linked = LinkedMesh::new(mesh, &boundary, &sides, &models, &mut findings);
+        let numbering = Numbering::new(mesh);
+        let models = of_known_zones(&models, &numbering, &mut findings);
+        let linked = LinkedMesh::new(mesh, &boundary, &sides, &numbering, &models, &mut findings);
         if let Some(linked) = linked {
             mesh_links::check(&linked, &models, &mut findings);
             validation.coverage = coverage::check(&linked, &models, &mut findings);
@@ -251,7 +253,7 @@ fn of_this_mesh<'r, 'a>(
 ) -> Vec<&'r ModelLinks<'a>> {
     let all = || resolution.models.iter();
     let Some(path) = mesh else { return all().collect() };
-    let own: Vec<&ModelLinks<'a>> = all().filter(|links| same_file(&links.file.filename, path)).collect();
+    let own = models_of(resolution, path);
     if !own.is_empty() {
         return own;
     }
@@ -261,6 +263,22 @@ fn of_this_mesh<'r, 'a>(
         });
     }
     all().collect()
+}
+
+/// The models of the zones that the mesh file has.
+fn of_known_zones<'r, 'a>(
+    models: &[&'r ModelLinks<'a>],
+    numbering: &Numbering<'_>,
+    findings: &mut Findings,
+) -> Vec<&'r ModelLinks<'a>> {
+    let mut known = Vec::new();
+    for links in models {
+        match numbering.part(&links.model.reference) {
+            Ok(_) => known.push(*links),
+            Err(error) => findings.push(Code::UnknownZone, links.model.origin, || error.to_string()),
+        }
+    }
+    known
 }
 
 /// What people call a container.

@@ -5,7 +5,7 @@ use linkage_schema::{Code, Document, Findings, GeometryFile, GeometryId, Resolut
 use rustc_hash::FxHashMap;
 
 use super::called;
-use crate::associate::same_file;
+use crate::associate::{own_geometry, same_file};
 
 /// Extensions and format names of geometry that OpenCASCADE cannot read.
 const FOREIGN: [&str; 5] = ["nmb", "x_t", "x_b", "prt", "catpart"];
@@ -25,11 +25,18 @@ impl Geometry {
         findings: &mut Findings,
     ) -> Geometry {
         let mut geometry = Geometry::default();
+        let own = model.map(|model| own_geometry(document, model.path()));
         for file in &document.geometry_files {
             let given = model.is_some_and(|model| same_file(&file.filename, model.path()));
             if let Some(format) = unreadable(file, resolution).filter(|_| !given) {
                 findings.push(Code::UnreadableGeometry, file.origin, || {
                     format!("{:?} is geometry in the format {format}, which OpenCASCADE cannot read", file.filename)
+                });
+                continue;
+            }
+            if own.as_ref().is_some_and(|own| !own.iter().any(|own| std::ptr::eq(*own, file))) {
+                findings.push(Code::UnreadableGeometry, file.origin, || {
+                    format!("{:?} is another CAD file than the one given", file.filename)
                 });
                 continue;
             }

@@ -35,7 +35,8 @@ pub(super) fn check(
     let joints = Joints::new(model);
     let mut runs: Vec<(Origin, String)> = Vec::new();
     let mut told: Vec<Told> = Vec::new();
-    for sheet in models.iter().flat_map(|links| &links.sheets) {
+    for (links, sheet) in models.iter().flat_map(|links| links.sheets.iter().map(move |sheet| (links, sheet))) {
+        let linked = &linked.within(links.model);
         for link in &sheet.faces {
             let faces: Vec<FaceId> = geometry
                 .of(link.target.as_deref())
