@@ -5,7 +5,7 @@ usage: consume.py SAGITTA [CASE:ORDERS...] > table
 
 Curves the cases, writes each result in every format, and gives the files to the readers of readers.py, each in a process of its
 own. Volumes, areas and counts are held against reference.py, which reads the text MSH 2.2 file with no reader's code. Prints the
-table that stands in tests/consumers/README.md; exit code 1 where a reader finds something else than is there.
+table that stands in tests/consumers/README.md; exit code 1 where a reader, not known to be at fault, finds something else than is there.
 """
 import json
 import math
@@ -22,6 +22,8 @@ FORMATS = {"msh41b": ("msh", []), "msh41a": ("msh", ["--ascii"]), "msh22b": ("ms
            "msh22a": ("msh", ["--msh-version", "2.2", "--ascii"]), "cgns": ("cgns", []), "vtu": ("vtu", []), "vtu_volume": ("vtu", ["--volume-only"])}
 TITLES = {"msh41b": "MSH 4.1", "msh41a": "MSH 4.1 ASCII", "msh22b": "MSH 2.2", "msh22a": "MSH 2.2 ASCII", "cgns": "CGNS", "vtu": "VTU",
           "vtu_volume": "VTU --volume-only"}
+# What a reader is known to read wrong; tests/consumers/README.md has the evidence.
+FAULTY = {("VTK", "cgns", "periodic/sector P4")}
 EXACT = 1e-7  # relative; the readers' quadratures differ
 
 
@@ -179,7 +181,8 @@ def main():
             with tempfile.TemporaryDirectory() as folder:
                 consume(os.path.abspath(sagitta), case, order, folder, results)
     table(results)
-    sys.exit(any(verdict == "wrong" for verdicts in results.values() for _, verdict, _ in verdicts))
+    wrong = {(*pair, what) for pair, verdicts in results.items() for what, verdict, _ in verdicts if verdict == "wrong"}
+    sys.exit(bool(wrong - FAULTY))
 
 
 def table(results):
