@@ -14,6 +14,7 @@ mod link;
 mod points;
 mod progress;
 mod project;
+mod reading;
 mod trace;
 mod validate;
 

@@ -40,6 +40,35 @@ pub(super) fn same_scale(
     geometry: &Geometry,
     findings: &mut Findings,
 ) -> bool {
+    match (models.first(), misfit(linked, models, model, geometry)) {
+        (Some(first), Some(error)) => {
+            findings.push(Code::OtherScale, first.model.origin, || error.to_string());
+            false
+        }
+        _ => true,
+    }
+}
+
+/// The factor between units by which the CAD must be multiplied to fit the mesh, if that is what sets them apart.
+pub(super) fn unit_factor(
+    linked: &LinkedMesh<'_>,
+    models: &[&ModelLinks<'_>],
+    model: &Model,
+    geometry: &Geometry,
+) -> Option<f64> {
+    match misfit(linked, models, model, geometry)? {
+        AssociateError::Scale { factor, .. } => Some(factor),
+        _ => None,
+    }
+}
+
+/// How the boxes of what is linked, in mesh and CAD, differ in size or place.
+fn misfit(
+    linked: &LinkedMesh<'_>,
+    models: &[&ModelLinks<'_>],
+    model: &Model,
+    geometry: &Geometry,
+) -> Option<AssociateError> {
     let mut claims = Claims::default();
     for links in models {
         let linked = linked.within(links.model);
@@ -51,14 +80,8 @@ pub(super) fn same_scale(
             }
         }
     }
-    let (Some(first), false) = (models.first(), claims.sheets.is_empty()) else { return true };
-    match check_boxes(linked.mesh, linked.boundary, model, &claims) {
-        Err(error @ (AssociateError::Scale { .. } | AssociateError::Place { .. })) => {
-            findings.push(Code::OtherScale, first.model.origin, || error.to_string());
-            false
-        }
-        _ => true,
-    }
+    let error = (!claims.sheets.is_empty()).then(|| check_boxes(linked.mesh, linked.boundary, model, &claims).err())??;
+    matches!(error, AssociateError::Scale { .. } | AssociateError::Size { .. } | AssociateError::Place { .. }).then_some(error)
 }
 
 /// Measures all sheets, strings and points.

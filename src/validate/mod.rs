@@ -49,6 +49,10 @@ pub struct Job {
     pub cad: Option<PathBuf>,
     /// How far a linked point may be from its CAD entity, in the mesh's unit. Default 1e-5 of the mesh's box.
     pub tolerance: Option<f64>,
+    /// What the CAD is multiplied by; `None` finds the factor between units that fits.
+    pub cad_scale: Option<f64>,
+    /// How the CAD is read.
+    pub reading: ReadOptions,
 }
 
 /// Why nothing could be validated.
@@ -76,6 +80,8 @@ pub struct Validation {
     pub mesh: Option<PathBuf>,
     /// The CAD, if one was given.
     pub cad: Option<PathBuf>,
+    /// What the CAD was multiplied by.
+    pub cad_scale: f64,
     /// Findings, by their place in the file; of each kind the first 200.
     pub findings: Vec<Found>,
     /// How many there were, kept or not.
@@ -126,6 +132,7 @@ impl Validation {
             linkage: job.linkage.clone(),
             mesh: job.mesh.clone(),
             cad: job.cad.clone(),
+            cad_scale: job.cad_scale.unwrap_or(1.0),
             findings: Vec::new(),
             errors: 0,
             warnings: 0,
@@ -174,7 +181,8 @@ impl Found {
 pub fn validate(job: &Job) -> Result<Validation, ValidateError> {
     let mut validation = Validation::new(job);
     let mesh = job.mesh.as_deref().map(read_mesh).transpose()?;
-    let model = job.cad.as_deref().map(|path| Model::read(path, &ReadOptions::default())).transpose()?;
+    let read = |path: &Path, scale| Model::read(path, &ReadOptions { scale, ..job.reading.clone() });
+    let mut model = job.cad.as_deref().map(|path| read(path, validation.cad_scale)).transpose()?;
     let reading = match linkage_schema::read_path(&job.linkage) {
         Ok(reading) => reading,
         Err(error @ (ReadError::Open { .. } | ReadError::Io { .. })) => return Err(error.into()),
@@ -196,6 +204,11 @@ pub fn validate(job: &Job) -> Result<Validation, ValidateError> {
             mesh_links::check(&linked, &models, &mut findings);
             validation.coverage = coverage::check(&linked, &models, &mut findings);
             periodic::check(&linked, &resolution, &mut findings);
+            let fitting = model.as_ref().and_then(|model| distances::unit_factor(&linked, &models, model, &geometry));
+            if let (None, Some(cad), Some(factor)) = (job.cad_scale, &job.cad, fitting) {
+                validation.cad_scale = factor;
+                model = Some(read(cad, factor)?);
+            }
             if let Some(model) = &model {
                 with_cad(job, &linked, &models, model, &geometry, &mut findings, &mut validation);
             }
