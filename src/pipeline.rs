@@ -321,11 +321,9 @@ fn tie(job: &Job, linear: &Mesh, boundary: &Boundary, model: Model) -> Result<(a
     let attempt = |model: &Model| -> Result<associate::Tied, PipelineError> {
         let choose = |claims: &mut associate::Claims| claims.leave_straight(boundary, &straight);
         let linkage = job.linkage.as_deref().map(|path| [path, &job.mesh]);
-        associate::tie(linkage, linear, boundary, model, job.max_offset, &choose).map_err(|error| {
-            match error {
-                TieError::Linkage(error) => error.into(),
-                TieError::Associate(cause) => refused(&job.mesh, &job.cad, cause),
-            }
+        associate::tie(linkage, linear, boundary, model, job.max_offset, &choose).map_err(|error| match error {
+            TieError::Linkage(error) => error.into(),
+            TieError::Associate(cause) => refused(&job.mesh, &job.cad, cause),
         })
     };
     let first = attempt(&model);

@@ -99,7 +99,8 @@ fn link_and_validate_take_the_factor_too() {
 #[test]
 fn reading_the_cad_is_given_up_in_time() {
     let place = Place::new();
-    let (mesh, cad, output) = (fixture("weeble", "msh"), fixture("weeble", "step"), place.dir.path().join("out/link.xml"));
+    let (mesh, cad, output) =
+        (fixture("weeble", "msh"), fixture("weeble", "step"), place.dir.path().join("out/link.xml"));
     let linkage = fixture("weeble", "meshlink.xml");
     for arguments in [
         args!["link", mesh, "--cad", cad, "-o", output, "--cad-timeout", "0.0001"].to_vec(),

@@ -130,6 +130,8 @@ codes! {
     BadTransform = "ML310", Warning, "write a 4x4 matrix, row by row";
     /// A linkage whose source or target is neither the name nor the mid of a mesh element.
     UnknownMeshElement = "ML311", Warning, "write the name or the mid of a sheet or string of this document";
+    /// A linkage whose source and target are of different kinds.
+    UnequalPair = "ML312", Warning, "link a sheet with a sheet, a string with a string";
     /// A point index that is beyond the mesh's nodes.
     IndexBeyondMesh = "ML401", Error, "correct the index, or give the mesh that the linkage was written for";
     /// All indices are off by one: the file counts points from 0, or from 2, where the format counts from 1.
@@ -197,6 +199,8 @@ pub struct Finding {
     pub code: Code,
     /// Its place.
     pub origin: Origin,
+    /// The word of the element's content that it is about, from 0, where it stands at the element.
+    pub(crate) word: Option<usize>,
     /// What is wrong, in one sentence without its end.
     pub message: String,
 }
@@ -227,7 +231,7 @@ impl fmt::Display for Finding {
 /// a million dangling references must not fill the memory.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Findings {
-    list: Vec<Finding>,
+    pub(crate) list: Vec<Finding>,
     counts: BTreeMap<Code, usize>,
 }
 
@@ -237,10 +241,19 @@ impl Findings {
 
     /// Adds a finding; the message is made only if it is kept.
     pub fn push(&mut self, code: Code, origin: Origin, message: impl FnOnce() -> String) {
+        self.add(code, origin, None, message);
+    }
+
+    /// Adds a finding about one word of the content of the element at `origin`, from 0: [`Findings::place_words`] finds its place.
+    pub fn push_word(&mut self, code: Code, origin: Origin, word: Option<usize>, message: impl FnOnce() -> String) {
+        self.add(code, origin, word, message);
+    }
+
+    fn add(&mut self, code: Code, origin: Origin, word: Option<usize>, message: impl FnOnce() -> String) {
         let count = self.counts.entry(code).or_default();
         *count += 1;
         if *count <= Self::KEPT {
-            self.list.push(Finding { code, origin, message: message() });
+            self.list.push(Finding { code, origin, word, message: message() });
         }
     }
 

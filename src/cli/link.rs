@@ -9,8 +9,8 @@ use super::curve::positive;
 use super::reading::Reading;
 use super::{DONE, Failure, print, write_json};
 use crate::associate::{self, AssociateError, Boundary, Claims, Inference, Tolerance, associate, infer};
-use crate::mesh::Mesh;
 use crate::formats;
+use crate::mesh::Mesh;
 
 /// A point may be this far from what its tag names; share of the mesh's box.
 const MAX_OFFSET: f64 = 1e-3;

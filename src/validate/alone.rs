@@ -20,20 +20,25 @@ fn repeated_faces(links: &ModelLinks<'_>, findings: &mut Findings) {
     for sheet in &links.sheets {
         for link in &sheet.faces {
             let mut again = Vec::new();
-            for face in link.run.faces() {
+            for (number, face) in link.run.faces().enumerate() {
                 match seen.entry(key(face)) {
-                    Entry::Occupied(first) => again.push((face, *first.get())),
+                    Entry::Occupied(first) => again.push((number, face, *first.get())),
                     Entry::Vacant(vacant) => {
                         vacant.insert(link.run.origin);
                     }
                 }
             }
-            let Some(&(face, first)) = again.first() else { continue };
-            findings.push(Code::RepeatedFace, link.run.origin, || {
-                let place = first.position().map_or_else(String::new, |at| format!(", at {at}"));
-                let who = called("MeshSheet", sheet.name());
-                format!("{} faces of {who} are linked before{place}; the first is {face:?}", again.len())
-            });
+            let Some(&(number, face, first)) = again.first() else { continue };
+            findings.push_word(
+                Code::RepeatedFace,
+                link.run.origin,
+                link.run.encoding.word(number * face.len()),
+                || {
+                    let place = first.position().map_or_else(String::new, |at| format!(", at {at}"));
+                    let who = called("MeshSheet", sheet.name());
+                    format!("{} faces of {who} are linked before{place}; the first is {face:?}", again.len())
+                },
+            );
         }
     }
 }

@@ -80,8 +80,10 @@ fn misfit(
             }
         }
     }
-    let error = (!claims.sheets.is_empty()).then(|| check_boxes(linked.mesh, linked.boundary, model, &claims).err())??;
-    matches!(error, AssociateError::Scale { .. } | AssociateError::Size { .. } | AssociateError::Place { .. }).then_some(error)
+    let error =
+        (!claims.sheets.is_empty()).then(|| check_boxes(linked.mesh, linked.boundary, model, &claims).err())??;
+    matches!(error, AssociateError::Scale { .. } | AssociateError::Size { .. } | AssociateError::Place { .. })
+        .then_some(error)
 }
 
 /// Measures all sheets, strings and points.

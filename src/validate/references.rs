@@ -1,5 +1,7 @@
 //! What the file's references mean in the CAD.
 
+use std::cell::RefCell;
+
 use cad::{EntityId, Model};
 use linkage_schema::{Code, Document, Findings, GeometryFile, GeometryId, Resolution, Target};
 use rustc_hash::FxHashMap;
@@ -14,6 +16,8 @@ const FOREIGN: [&str; 5] = ["nmb", "x_t", "x_b", "prt", "catpart"];
 #[derive(Debug, Default)]
 pub(super) struct Geometry {
     entities: FxHashMap<GeometryId, Vec<EntityId>>,
+    /// Those of targets that were asked for: a large group may be asked for often.
+    targets: RefCell<FxHashMap<GeometryId, Vec<EntityId>>>,
 }
 
 impl Geometry {
@@ -69,11 +73,16 @@ impl Geometry {
 
     /// The entities of a target; none where it was not found, or not looked for.
     pub(super) fn of(&self, target: Option<&Target<'_>>) -> Vec<EntityId> {
-        let members = target.into_iter().flat_map(|target| &target.entities);
+        let Some(target) = target else { return Vec::new() };
+        if let Some(known) = self.targets.borrow().get(&target.id) {
+            return known.clone();
+        }
+        let members = target.entities.iter();
         let mut all: Vec<EntityId> =
             members.flat_map(|entity| self.entities.get(&entity.id).into_iter().flatten().copied()).collect();
         all.sort_unstable();
         all.dedup();
+        self.targets.borrow_mut().insert(target.id, all.clone());
         all
     }
 

@@ -14,6 +14,7 @@ macro_rules! args {
 }
 
 pub mod input;
+pub mod linkage;
 
 /// The repository.
 pub fn root() -> &'static Path {

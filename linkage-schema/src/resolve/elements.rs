@@ -162,6 +162,16 @@ fn check(pair: &ElementPair<'_>, findings: &mut Findings) {
             });
         }
     }
+    if let (Some(source), Some(target)) = (pair.source, pair.target)
+        && std::mem::discriminant(&source) != std::mem::discriminant(&target)
+    {
+        findings.push(Code::UnequalPair, linkage.origin, || {
+            format!(
+                "MeshElementLinkage links {:?} with {:?}, which are of different kinds",
+                linkage.source, linkage.target
+            )
+        });
+    }
     if let (Some(id), None) = (linkage.transform, pair.transform) {
         findings.push(Code::DanglingReference, linkage.origin, || {
             format!("MeshElementLinkage has xref {id}, which no Transform defines")

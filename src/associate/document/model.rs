@@ -5,7 +5,8 @@ use std::num::NonZeroU32;
 
 use cad::EntityId;
 use linkage_schema::{
-    Common, EdgeRun, Encoding, FaceRun, FaceShape, MeshModel, MeshString, Origin, PointRun, Sheet, SheetBody, StringBody,
+    Common, EdgeRun, Encoding, FaceRun, FaceShape, MeshModel, MeshString, Origin, PointRun, Sheet, SheetBody,
+    StringBody,
 };
 
 use super::TooLarge;
@@ -127,7 +128,9 @@ impl Writer<'_> {
             let label = self.mesh.label(entity);
             let name = if alike[&label] > 1 { format!("{label}/{entity}") } else { label };
             let mut cut: Vec<(Part, Runs<'c>)> = Vec::new();
-            for (entities, face) in runs.iter().flat_map(|(entities, faces)| faces.iter().map(|&face| (*entities, face))) {
+            for (entities, face) in
+                runs.iter().flat_map(|(entities, faces)| faces.iter().map(|&face| (*entities, face)))
+            {
                 let Some(part) = self.part(&self.boundary.corners[face]) else { continue };
                 match cut.iter_mut().find(|(own, _)| *own == part) {
                     Some((_, runs)) => push(runs, entities, face),
