@@ -15,6 +15,7 @@ macro_rules! args {
 
 pub mod input;
 pub mod linkage;
+pub mod ugrid;
 
 /// The repository.
 pub fn root() -> &'static Path {
