@@ -213,15 +213,21 @@ fn what_is_written_is_valid_by_both_schemas() {
         Some(folder) => schemas.push(Path::new(&folder).join("MeshLink.xsd")),
         None => common::warn("SAGITTA_MESHLINK is not set: written linkage is held against our own schema only"),
     }
-    for case in ["weeble", "weeble_hybrid", "cylinder_bl", "torus", "wing_sharp"] {
-        let output = dir.path().join(format!("{case}.xml"));
+    let periodic = root().join("fixtures/periodic/sector");
+    let mut cases: Vec<PathBuf> = ["weeble", "weeble_hybrid", "cylinder_bl", "torus", "wing_sharp"]
+        .map(|case| fixture(case, "msh").with_extension(""))
+        .to_vec();
+    cases.push(periodic);
+    for case in cases {
+        let output = dir.path().join("link.xml");
         for more in [&[][..], &["--ignore-tags"]] {
-            let arguments = args!["link", fixture(case, "msh"), "--cad", fixture(case, "step"), "-o", output];
+            let [mesh, cad] = ["msh", "step"].map(|extension| case.with_extension(extension));
+            let arguments = args!["link", mesh, "--cad", cad, "-o", output];
             sagitta(arguments.into_iter().chain(more.iter().map(std::ffi::OsString::from))).expect(0);
             for schema in &schemas {
                 let verdict =
                     Command::new("xmllint").args(["--noout", "--schema"]).arg(schema).arg(&output).output().unwrap();
-                assert!(verdict.status.success(), "{case}: {}", String::from_utf8_lossy(&verdict.stderr));
+                assert!(verdict.status.success(), "{}: {}", case.display(), String::from_utf8_lossy(&verdict.stderr));
             }
         }
     }

@@ -342,6 +342,23 @@ fn linear_nodes_off_the_cad() {
     }
 }
 
+/// Faces of higher order have more nodes than corners, and a linkage file could not say which is which.
+#[test]
+fn a_curved_mesh_is_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let output = dir.path().join("link.xml");
+    let [mesh, linkage] =
+        ["samples/hexpyrtet_p2.cgns", "weeble/weeble.meshlink.xml"].map(|name| root().join("fixtures").join(name));
+    let cad = fixture("weeble", "step");
+    for arguments in
+        [args!["link", mesh, "--cad", cad, "-o", output].to_vec(), args!["validate", linkage, "--mesh", mesh].to_vec()]
+    {
+        let told = sagitta(arguments).expect(2).stderr;
+        assert!(told.contains("hexpyrtet_p2.cgns: is of order P2"), "{told}");
+    }
+    assert!(!output.exists());
+}
+
 #[test]
 fn patches_can_be_chosen_and_the_association_shown() {
     let dir = tempfile::tempdir().unwrap();

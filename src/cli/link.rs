@@ -11,6 +11,7 @@ use super::{DONE, Failure, print, write_json};
 use crate::associate::{self, AssociateError, Boundary, Claims, Inference, Tolerance, associate, infer};
 use crate::formats;
 use crate::mesh::Mesh;
+use crate::validate::read_linear;
 
 /// A point may be this far from what its tag names; share of the mesh's box.
 const MAX_OFFSET: f64 = 1e-3;
@@ -55,7 +56,7 @@ struct Nothing {
 /// Ties a mesh to its CAD and writes the linkage.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     formats::check_folder(&options.output)?;
-    let mesh = formats::read(&options.mesh)?;
+    let mesh = read_linear(&options.mesh)?;
     let boundary = Boundary::new(&mesh);
     let reading = options.reading.options();
     let mut model = Model::read(&options.cad, &reading)?;

@@ -65,7 +65,7 @@ pub enum ValidateError {
     Mesh(#[from] formats::Error),
     #[error(transparent)]
     Cad(#[from] cad::ReadError),
-    #[error("{}: is of order {order}; linkage is held against the linear mesh", mesh.display())]
+    #[error("{}: is of order {order}; linkage speaks of linear meshes: give the one that it was made from", mesh.display())]
     NotLinear { mesh: PathBuf, order: crate::element::Order },
 }
 
@@ -180,7 +180,7 @@ impl Found {
 /// [`ValidateError`]: a file that cannot be read. A linkage file that is broken is a finding.
 pub fn validate(job: &Job) -> Result<Validation, ValidateError> {
     let mut validation = Validation::new(job);
-    let mesh = job.mesh.as_deref().map(read_mesh).transpose()?;
+    let mesh = job.mesh.as_deref().map(read_linear).transpose()?;
     let read = |path: &Path, scale| Model::read(path, &ReadOptions { scale, ..job.reading.clone() });
     let mut model = job.cad.as_deref().map(|path| read(path, validation.cad_scale)).transpose()?;
     let reading = match linkage_schema::read_path(&job.linkage) {
@@ -243,7 +243,11 @@ fn with_cad(
     sharp_edges::check(linked, models, model, geometry, job.tolerance, findings);
 }
 
-fn read_mesh(path: &Path) -> Result<Mesh, ValidateError> {
+/// Reads a mesh that linkage can speak of: a linear one.
+///
+/// # Errors
+/// [`ValidateError::Mesh`], [`ValidateError::NotLinear`].
+pub fn read_linear(path: &Path) -> Result<Mesh, ValidateError> {
     let mesh = formats::read(path)?;
     if mesh.order != crate::element::Order::LINEAR {
         return Err(ValidateError::NotLinear { mesh: path.to_owned(), order: mesh.order });
