@@ -124,7 +124,7 @@ impl Ladder<'_> {
             ..self.settings.clone()
         };
         let problem = Problem::new(&self.elevated.mesh, straight);
-        let again = smooth(&problem, &Held { wall, shares }, &settings, places, watch);
+        let again = smooth(&problem, &Held { wall, shares }, &settings, places, None, watch);
         smoothed.sweeps += again.sweeps;
         smoothed.stopped |= again.stopped;
         smoothed.costs = again.costs;

@@ -41,11 +41,13 @@
 
 pub mod associate;
 pub mod certify;
+pub mod checkpoint;
 pub mod cli;
 pub mod element;
 pub mod elevate;
 pub mod formats;
 pub mod ladder;
+pub mod layers;
 pub mod mesh;
 pub mod periodic;
 pub mod perturb;

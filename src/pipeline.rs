@@ -1,5 +1,6 @@
 //! The order of the steps, from files in to a curved mesh and its report.
 
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -10,16 +11,18 @@ use crate::associate::{
     self, AssociateError, Association, Boundary, Choice, Host, LinkageError, Summary, TieError, UnknownPatch,
 };
 use crate::certify::{self, Certificate, WallFace, Walls};
+use crate::checkpoint::{self, CheckpointError, Work};
 use crate::element::Order;
 use crate::elevate::{Elevated, elevate};
 use crate::formats;
 use crate::ladder::{Climbed, Ladder};
+use crate::layers::leave_straight_beyond;
 use crate::mesh::{Mesh, TooMany};
 use crate::periodic::Ties;
 use crate::perturb::perturb;
 use crate::project::{CadConstraint, Projected, project};
 use crate::retreat::GivenUp;
-use crate::smooth::{self, Problem, Smoothed, smooth};
+use crate::smooth::{self, Checkpoint, Problem, Smoothed, Watch, smooth};
 
 /// Elements that an error lists by number.
 const LISTED: usize = 10;
@@ -43,12 +46,16 @@ pub struct Job {
     pub freeze_linear: bool,
     /// Keep nodes on curved walls where projection put them.
     pub freeze_walls: bool,
+    /// Layers of elements off curved walls that may be curved; `None` leaves it to the walls' displacement.
+    pub curve_layers: Option<NonZeroUsize>,
     /// What the CAD is multiplied by; `None` finds the factor between known units that makes it fit.
     pub cad_scale: Option<f64>,
     /// Limits of the CAD reader.
     pub reading: ReadOptions,
     /// The smoother's settings.
     pub smoothing: smooth::Settings,
+    /// A checkpoint file to go on from.
+    pub resume: Option<PathBuf>,
 }
 
 impl Job {
@@ -64,10 +71,20 @@ impl Job {
             max_offset: 1e-3,
             freeze_linear: false,
             freeze_walls: false,
+            curve_layers: None,
             cad_scale: Some(1.0),
             reading: ReadOptions::default(),
             smoothing: smooth::Settings::default(),
+            resume: None,
         }
+    }
+
+    /// What a checkpoint of this job belongs to.
+    fn work(&self, problem: &Problem, straight: &[DVec3], start: &[DVec3]) -> Work {
+        let smooth::Settings { threshold, alpha, max_sweeps: _, survey_factor, engine } = &self.smoothing;
+        let held = (self.freeze_linear, self.freeze_walls, self.curve_layers);
+        let settings = format!("{:?}", (threshold, alpha, survey_factor, engine, held));
+        Work::new(problem.element_count(), straight, start, &settings)
     }
 }
 
@@ -110,6 +127,24 @@ pub trait Observer {
     fn step(&mut self, step: Step);
     /// The smoother finished a sweep; false ends it.
     fn progress(&mut self, progress: &smooth::Progress) -> bool;
+    /// A state from which [`Job::resume`] goes on.
+    fn checkpoint(&mut self, _work: &Work, _checkpoint: &Checkpoint) {}
+}
+
+/// Hands on what the smoother tells.
+struct Told<'a> {
+    observer: &'a mut dyn Observer,
+    work: Work,
+}
+
+impl Watch for Told<'_> {
+    fn progress(&mut self, progress: smooth::Progress) -> bool {
+        self.observer.progress(&progress)
+    }
+
+    fn checkpoint(&mut self, checkpoint: &Checkpoint) {
+        self.observer.checkpoint(&self.work, checkpoint);
+    }
 }
 
 /// Why there is no curved mesh. Every message names the file it is about.
@@ -122,6 +157,8 @@ pub enum PipelineError {
     Cad(#[from] cad::ReadError),
     #[error(transparent)]
     Linkage(#[from] LinkageError),
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
     #[error("{mesh} and {cad}: {cause}", mesh = mesh.display(), cad = cad.display())]
     Associate { mesh: PathBuf, cad: PathBuf, cause: Box<AssociateError> },
     #[error("{mesh}: {cause}", mesh = mesh.display())]
@@ -199,6 +236,9 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
     clock.step(Step::Project);
     let mut projected = project(&elevated, &boundary, &association, job.freeze_linear);
     ties.carry(&elevated.mesh.points, &mut projected.displacement);
+    if let Some(layers) = job.curve_layers {
+        leave_straight_beyond(layers, &elevated, &boundary, &association, &ties, &mut projected);
+    }
 
     clock.step(Step::Perturb);
     let mut places = perturb(&elevated, &boundary, &association, &projected, &ties);
@@ -216,8 +256,10 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
         job.freeze_walls,
         job.freeze_linear,
     );
-    let mut smoothed =
-        smooth(&problem, &constraint, &job.smoothing, &mut places, |progress| clock.observer.progress(&progress));
+    let work = job.work(&problem, &straight, &places);
+    let resumed = job.resume.as_deref().map(|path| checkpoint::read(path, &work)).transpose()?;
+    let mut told = Told { observer: clock.observer, work };
+    let mut smoothed = smooth(&problem, &constraint, &job.smoothing, &mut places, resumed, &mut told);
 
     clock.step(Step::Certify);
     let ladder = Ladder {

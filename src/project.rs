@@ -35,6 +35,8 @@ pub struct Projected {
     pub displacement: Vec<DVec3>,
     /// Size of the edge or face around every node inside a boundary edge or face, by node.
     pub sizes: FxHashMap<usize, f64>,
+    /// Linear nodes beyond the layers that may be curved, by node; empty where there is no such limit.
+    pub beyond: Vec<bool>,
     /// How many closest points were asked for.
     pub projections: usize,
     /// How many of them are not proven to be the closest.
@@ -56,6 +58,7 @@ pub fn project(elevated: &Elevated, boundary: &Boundary, association: &Associati
             hosts,
             displacement: vec![DVec3::ZERO; nodes],
             sizes: FxHashMap::default(),
+            beyond: Vec::new(),
             projections: 0,
             unproven: 0,
         },

@@ -7,6 +7,7 @@ use std::time::Duration;
 use clap::Args;
 
 use super::form::Form;
+use super::keeper::Keeper;
 use super::progress::Teller;
 use super::reading::Reading;
 use super::trace::Trace;
@@ -58,6 +59,10 @@ pub(super) struct Options {
     /// Keep nodes on curved walls where projection put them
     #[arg(long)]
     freeze_walls: bool,
+    /// Curve this many layers of elements off curved walls, and leave those beyond straight; `auto` lets the walls' displacement
+    /// end where it has fallen to nothing
+    #[arg(long, value_name = "auto|N", default_value = "auto", value_parser = layers)]
+    curve_layers: Layers,
     /// Elements whose cost is below are worked on (0 to 1)
     #[arg(long, value_name = "0..1", default_value_t = 0.8, value_parser = share)]
     threshold: f64,
@@ -87,10 +92,23 @@ pub(super) struct Options {
     /// Seconds after which smoothing ends; what is there by then is certified and written
     #[arg(long, value_name = "S", value_parser = positive)]
     time_limit: Option<f64>,
+    /// Keep the state of the smoothing in this file, to go on from after a crash or a full queue
+    #[arg(long, value_name = "FILE")]
+    checkpoint: Option<PathBuf>,
+    /// Sweeps from one checkpoint to the next; it is written at the end of the round of 10 sweeps
+    #[arg(long, value_name = "N", default_value_t = 20, requires = "checkpoint")]
+    checkpoint_every: usize,
+    /// Go on from a checkpoint, to the same bytes as without the interruption
+    #[arg(long, value_name = "FILE")]
+    resume: Option<PathBuf>,
     /// No progress on stderr
     #[arg(short, long)]
     quiet: bool,
 }
+
+/// The number of `--curve-layers`; `None` is `auto`.
+#[derive(Clone, Copy, Debug)]
+struct Layers(Option<NonZeroUsize>);
 
 fn order(text: &str) -> Result<Order, String> {
     let wrong = || format!("{text:?} is not an order: give 2, 3 or 4");
@@ -107,6 +125,14 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
 fn share(text: &str) -> Result<f64, String> {
     let value = text.parse::<f64>().ok().filter(|v| (0.0..=1.0).contains(v));
     value.ok_or_else(|| format!("{text:?} is not between 0 and 1"))
+}
+
+fn layers(text: &str) -> Result<Layers, String> {
+    if text == "auto" {
+        return Ok(Layers(None));
+    }
+    let number = text.parse::<NonZeroUsize>();
+    number.map(|number| Layers(Some(number))).map_err(|_| format!("{text:?} is neither auto nor a number from 1"))
 }
 
 fn engine(text: &str) -> Result<smooth::Engine, String> {
@@ -133,6 +159,7 @@ impl Options {
             max_offset: self.max_offset,
             freeze_linear: self.freeze_linear,
             freeze_walls: self.freeze_walls,
+            curve_layers: self.curve_layers.0,
             cad_scale: self.reading.scale(),
             reading: self.reading.options(),
             smoothing: smooth::Settings {
@@ -142,6 +169,7 @@ impl Options {
                 survey_factor: usize::from(self.survey_factor),
                 engine: self.engine,
             },
+            resume: self.resume.clone(),
         }
     }
 }
@@ -151,7 +179,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     if let Some(output) = &options.output {
         formats::check_output(output)?;
     }
-    for path in options.report.iter().chain(&options.trace) {
+    for path in options.report.iter().chain(&options.trace).chain(&options.checkpoint) {
         formats::check_folder(path)?;
     }
     if let Some(threads) = options.threads {
@@ -164,7 +192,11 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let limit = options.time_limit.map(Duration::from_secs_f64);
     let mut teller = Teller::new(options.quiet).stoppable(limit)?;
     let mut trace = Trace::new(&mut teller);
-    let curved = pipeline::curve(&job, &mut trace);
+    let mut keeper = Keeper::new(&mut trace, options.checkpoint.clone(), options.checkpoint_every);
+    let curved = pipeline::curve(&job, &mut keeper);
+    if let Some(failure) = keeper.failure {
+        eprintln!("sagitta: the last checkpoint was not written: {failure}");
+    }
     if let (Some(path), Ok(curved)) = (&options.trace, &curved) {
         trace.write(path, &curved.smoothed)?;
     }

@@ -10,6 +10,7 @@ mod explain;
 mod form;
 mod groups;
 mod info;
+mod keeper;
 mod link;
 mod points;
 mod progress;

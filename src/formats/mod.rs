@@ -164,7 +164,18 @@ pub fn check_folder(path: &Path) -> Result<(), Error> {
 /// # Errors
 /// [`Error::Io`].
 pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    output::write_whole(path, |out| Ok(std::io::Write::write_all(out, bytes)?))
+    write_file(path, |out| std::io::Write::write_all(out, bytes))
+}
+
+/// As [`write_bytes`], for content too large to be gathered first.
+///
+/// # Errors
+/// As [`write_bytes`].
+pub fn write_file(
+    path: &Path,
+    content: impl FnOnce(&mut std::io::BufWriter<std::fs::File>) -> std::io::Result<()>,
+) -> Result<(), Error> {
+    output::write_whole(path, |out| Ok(content(out)?))
 }
 
 /// Writes a mesh file; the format is that of the name's extension.

@@ -38,6 +38,8 @@ pub(super) struct Field<'a> {
     displacement: &'a [DVec3],
     /// At each wall vertex, how far its displacement reaches.
     reach: Vec<f64>,
+    /// At each wall vertex, the distance from it at which the displacement must have ended.
+    ends: Vec<f64>,
     /// Root of every linear node: a wall vertex; `None` where no path leads to a wall.
     roots: Vec<Option<u32>>,
     /// Wall faces around each wall vertex, by node: ranges of `around`.
@@ -63,6 +65,7 @@ impl<'a> Field<'a> {
         displacement: &'a [DVec3],
         seeds: &[bool],
         inherited: &[f64],
+        beyond: &[bool],
     ) -> Field<'a> {
         let (mesh, linear_nodes) = (&elevated.mesh, elevated.linear_nodes);
         let (starts, around) = faces_around(wall, linear_nodes);
@@ -76,8 +79,10 @@ impl<'a> Field<'a> {
         for (own, &inherited) in reach.iter_mut().zip(inherited) {
             *own = own.max(inherited);
         }
+        let ends = ends(points, &roots, beyond);
         Field {
             reach,
+            ends,
             order: mesh.order,
             points,
             wall,
@@ -107,12 +112,18 @@ impl<'a> Field<'a> {
         p * self.share(face, foot.at, x.distance(foot.place))
     }
 
-    /// `1 / (1 + (d / reach)^2)`, less [`END`] and none beyond.
+    /// `1 / (1 + (d / reach)^2)`, less [`END`] and none beyond; where the displacement must end at a distance `e`, times
+    /// `1 - (d / e)^2`.
     fn share(&self, face: &WallFace, at: [f64; 3], distance: f64) -> f64 {
         let weights = basis::values(face.cell, Order::LINEAR, at);
-        let reach: f64 = face.corners().iter().zip(weights).map(|(n, w)| self.reach[n.index()] * w).sum();
-        let t = distance / reach;
-        ((1.0 / (1.0 + t * t) - END) / (1.0 - END)).max(0.0)
+        let mean = |of: &[f64]| face.corners().iter().zip(&weights).map(|(n, w)| of[n.index()] * w).sum::<f64>();
+        let t = distance / mean(&self.reach);
+        let share = ((1.0 / (1.0 + t * t) - END) / (1.0 - END)).max(0.0);
+        if self.ends.is_empty() {
+            return share;
+        }
+        let t = distance / mean(&self.ends);
+        share * (1.0 - t * t).max(0.0)
     }
 
     /// The combination of the corners' roots, where one wall face has them all.
@@ -225,6 +236,20 @@ fn reaches(wall: &[WallFace], displacement: &[DVec3], points: &[DVec3], linear_n
         }
     }
     reaches
+}
+
+/// At each root the distance of the nearest of its nodes beyond the layers that may be curved; nothing where all may be.
+fn ends(points: &[DVec3], roots: &[Option<u32>], beyond: &[bool]) -> Vec<f64> {
+    if beyond.is_empty() {
+        return Vec::new();
+    }
+    let mut ends = vec![f64::MAX; roots.len()];
+    for (n, root) in roots.iter().enumerate().filter(|(n, _)| beyond[*n]) {
+        if let Some(root) = root.map(|root| root as usize) {
+            ends[root] = ends[root].min(points[n].distance(points[root]));
+        }
+    }
+    ends
 }
 
 fn faces_around(wall: &[WallFace], linear_nodes: usize) -> (Vec<u32>, Vec<u32>) {

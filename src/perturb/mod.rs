@@ -75,7 +75,7 @@ pub fn perturb(
     let mut seeds = vec![false; linear];
     wall.iter().flat_map(WallFace::corners).for_each(|n| seeds[n.index()] = true);
     let in_plane = |n: usize| n >= linear && planar(hosts[n]);
-    let field = Field::new(elevated, &wall, &displacement, &seeds, &[]);
+    let field = Field::new(elevated, &wall, &displacement, &seeds, &[], &projected.beyond);
     let reach = field.reach_of_roots();
     let mut carried = carry(&field, elevated, &displacement, in_plane);
     for (n, d) in carried.iter_mut().enumerate().skip(linear) {
@@ -94,7 +94,7 @@ pub fn perturb(
         *seed |= own;
     }
     wall.extend(planes);
-    let field = Field::new(elevated, &wall, &displacement, &seeds, &reach);
+    let field = Field::new(elevated, &wall, &displacement, &seeds, &reach, &projected.beyond);
     let displacement = carry(&field, elevated, &displacement, |n| hosts[n] == Host::Free);
     sum(elevated, association, hosts, &displacement)
 }

@@ -13,6 +13,7 @@ use crate::associate::Host;
 use crate::certify::{Certificate, FaceFinding, Judged, Verdict};
 use crate::element::{Cell, Order, Samples, basis};
 use crate::formats::{Field, Support, Values};
+use crate::layers::straight_elements;
 use crate::mesh::{EntityKey, Mesh};
 use crate::pipeline::{Curved, Job};
 use crate::quality::Columns;
@@ -88,6 +89,7 @@ fn cells(curved: &Curved) -> Vec<CellReport> {
     for (_, block) in curved.mesh.blocks_of(3) {
         kinds.extend(std::iter::repeat_n(block.cell, block.tags.len()));
     }
+    let straight = straight_elements(&curved.mesh, &curved.straight);
     let tallies = curved.certificate.tallies.iter().zip(Cell::VOLUME).filter(|(tally, _)| tally.elements > 0);
     tallies
         .map(|(tally, cell)| {
@@ -96,6 +98,7 @@ fn cells(curved: &Curved) -> Vec<CellReport> {
             CellReport {
                 cell: cell.name(),
                 count: tally.elements,
+                straight: own().filter(|&e| straight[e]).count(),
                 c_wcn_min: costs().map(|c| c.c_wcn).fold(1.0, f64::min),
                 c_wcn_mean: costs().map(|c| c.mean_c_wcn).sum::<f64>() / tally.elements as f64,
                 c_jac_min: costs().map(|c| c.c_jac).fold(1.0, f64::min),
@@ -190,12 +193,11 @@ impl CertificateReport {
 /// Per-cell values for pictures: certified minimum of J/J_c, and worst C_WCN.
 #[must_use]
 pub fn fields(curved: &Curved) -> Vec<Field> {
-    let real = |name: &str, values: Vec<f64>| Field {
-        name: name.to_owned(),
-        support: Support::Elements,
-        values: Values::Real(values),
-    };
+    let field = |name: &str, values| Field { name: name.to_owned(), support: Support::Elements, values };
+    let real = |name: &str, values| field(name, Values::Real(values));
+    let straight = straight_elements(&curved.mesh, &curved.straight);
     vec![
+        field("straight", Values::Integer(straight.into_iter().map(i64::from).collect())),
         real("certified_min_J_over_Jc", curved.certificate.minima.clone()),
         real("C_WCN", curved.smoothed.costs.iter().map(|c| c.c_wcn).collect()),
     ]

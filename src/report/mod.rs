@@ -91,6 +91,8 @@ pub struct CellReport {
     pub cell: &'static str,
     /// How many.
     pub count: usize,
+    /// How many of them no displacement reaches: they are written at the mesh's order, and straight.
+    pub straight: usize,
     /// Smallest `C_WCN` of their sub-elements (eqs 3-5).
     pub c_wcn_min: f64,
     /// Mean `C_WCN` of their sub-elements.

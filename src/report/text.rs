@@ -32,12 +32,13 @@ impl fmt::Display for Report {
 
 impl Report {
     fn cells(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let heads = ["cell", "count", "C_WCN min", "mean", "C_JAC min", "J/Jc proven", "valid"];
-        let [cell, count, wcn, mean, jac, proven, valid] = heads;
-        writeln!(f, "{cell:<10}{count:>10}{wcn:>12}{mean:>9}{jac:>12}{proven:>14}{valid:>10}")?;
+        let heads = ["cell", "count", "straight", "C_WCN min", "mean", "C_JAC min", "J/Jc proven", "valid"];
+        let [cell, count, straight, wcn, mean, jac, proven, valid] = heads;
+        writeln!(f, "{cell:<10}{count:>10}{straight:>10}{wcn:>12}{mean:>9}{jac:>12}{proven:>14}{valid:>10}")?;
         for c in &self.cells {
             let (min, mean, jac, proven) = (c.c_wcn_min, c.c_wcn_mean, c.c_jac_min, c.certified_min);
-            writeln!(f, "{:<10}{:>10}{min:>12.4}{mean:>9.4}{jac:>12.4}{proven:>14.4}{:>10}", c.cell, c.count, c.valid)?;
+            write!(f, "{:<10}{:>10}{:>10}", c.cell, c.count, c.straight)?;
+            writeln!(f, "{min:>12.4}{mean:>9.4}{jac:>12.4}{proven:>14.4}{:>10}", c.valid)?;
         }
         Ok(())
     }

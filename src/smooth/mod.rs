@@ -1,6 +1,7 @@
 //! Smoothing: stages, the active patch, the objective and its descent. Sees the CAD only as a [`Constraint`].
 
 mod block;
+mod checkpoint;
 mod density;
 mod descend;
 mod engine;
@@ -11,13 +12,16 @@ mod patch;
 mod problem;
 mod stages;
 mod survey;
+mod watch;
 
 use glam::DVec3;
 
 use crate::mesh::NodeId;
+pub use checkpoint::Checkpoint;
 pub use engine::Engine;
 pub use problem::{ElementCost, Problem};
 pub use stages::{Progress, Settings, Smoothed, Summary, smooth};
+pub use watch::Watch;
 
 /// The directions in which a node may move from where it stands.
 #[derive(Clone, Copy, Debug, PartialEq)]

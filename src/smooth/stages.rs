@@ -18,7 +18,7 @@ use super::kernel::Weights;
 use super::objective::Objective;
 use super::patch::Patch;
 use super::problem::Kernels;
-use super::{Constraint, ElementCost, Problem};
+use super::{Checkpoint, Constraint, ElementCost, Problem, Watch};
 use crate::quality;
 
 /// A survey is too coarse for an element where it misses this much of its `C_JAC`.
@@ -45,8 +45,9 @@ const FOCUS: f64 = 0.1;
 const PATIENCE: usize = 4;
 /// Rings of neighbours around them.
 const FOCUS_RINGS: usize = 4;
-/// Regularisation of determinants, as a share of what the worst is below [`LOW`] (after Garanzha et al.,
-/// doi:10.1145/3450626.3459847).
+/// Regularisation of determinants, as a share of what the worst is below [`LOW`], but for 1 at most (after Garanzha et al.,
+/// doi:10.1145/3450626.3459847). Without that end one element whose straight Jacobian is next to nothing somewhere (-9 times it
+/// on the torus at scale 0.5) takes the barrier from all others, and hundreds of them invert.
 const REGULARISATION: f64 = 0.5;
 
 /// What the user can set.
@@ -137,43 +138,49 @@ impl Summary {
         self.c_wcn.min(self.c_jac)
     }
 
+    /// One figure for both costs, in which the smaller counts more and yet the larger counts: where the CAD itself bounds the one
+    /// (a prism whose straight column leans on its wall cannot keep its shape on a curved one), the other still gains.
+    fn score(self) -> f64 {
+        if self.worst() > 0.0 { 2.0 / (1.0 / self.c_wcn + 1.0 / self.c_jac) } else { self.worst() }
+    }
+
     fn beats(self, other: Summary) -> bool {
-        self.inverted < other.inverted || (self.inverted == other.inverted && self.worst() > other.worst())
+        self.inverted < other.inverted || (self.inverted == other.inverted && self.score() > other.score())
     }
 }
 
-/// Moves the nodes `x` of a perturbed mesh to better places; `watch` is told after every sweep and ends the work by
-/// returning false.
+/// Moves the nodes `x` of a perturbed mesh to better places, or goes on from a checkpoint of the same work; `watch` is told
+/// after every sweep and ends the work by returning false.
 pub fn smooth(
     problem: &Problem,
     constraint: &dyn Constraint,
     settings: &Settings,
     x: &mut Vec<DVec3>,
-    mut watch: impl FnMut(Progress) -> bool,
+    resumed: Option<Checkpoint>,
+    watch: &mut dyn Watch,
 ) -> Smoothed {
     let surveys: Vec<Kernels> =
         factors(settings.survey_factor).iter().map(|f| Kernels::new(problem, problem.order.get() * f)).collect();
     let all: Vec<usize> = (0..problem.element_count()).collect();
     let costs = problem.costs(&surveys[surveys.len() - 1], x, &all);
     let start = Summary::of(&costs);
-    let best = Best { summary: start, costs: costs.clone(), x: x.clone() };
-    let density = vec![0; all.len()];
     let mut run = Run {
         problem,
         constraint,
         settings,
         surveys,
-        density,
+        density: vec![0; all.len()],
+        best: Best { summary: start, costs: costs.clone(), x: x.clone() },
         costs,
-        best,
+        pace: Pace::new(if start.c_wcn <= 0.0 { Stage::Shape } else { Stage::Full }),
         sweeps: 0,
         stopped: false,
-        watch: &mut watch,
+        watch,
     };
-    if start.c_wcn <= 0.0 {
-        run.work(Stage::Shape, x);
+    if let Some(checkpoint) = resumed {
+        run.resume(checkpoint, x);
     }
-    run.work(Stage::Full, x);
+    run.stages(x);
     *x = run.best.x;
     Smoothed { sweeps: run.sweeps, stopped: run.stopped, costs: run.best.costs, start, end: run.best.summary }
 }
@@ -187,11 +194,29 @@ struct Best {
 
 /// What a stage works on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Stage {
+pub(crate) enum Stage {
     /// Shape alone.
     Shape,
     /// Shape and Jacobian.
     Full,
+}
+
+/// Where a stage stands between two rounds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Pace {
+    pub(crate) stage: Stage,
+    /// Rounds in a row that gained next to nothing.
+    pub(crate) idle: usize,
+    /// Rings around elements below [`LOW`].
+    pub(crate) low_rings: usize,
+    /// Whether the worst elements are worked on alone.
+    pub(crate) focused: bool,
+}
+
+impl Pace {
+    fn new(stage: Stage) -> Pace {
+        Pace { stage, idle: 0, low_rings: RINGS, focused: false }
+    }
 }
 
 /// Survey densities in multiples of `p`: doubled from 1 to that of the closing survey.
@@ -213,80 +238,128 @@ struct Run<'a, 'p> {
     /// By the closing survey.
     costs: Vec<ElementCost>,
     best: Best,
+    pace: Pace,
     sweeps: usize,
     stopped: bool,
-    watch: &'a mut dyn FnMut(Progress) -> bool,
+    watch: &'a mut dyn Watch,
 }
 
 impl Run<'_, '_> {
-    /// One stage by the engine that was asked for.
-    fn work(&mut self, stage: Stage, x: &mut Vec<DVec3>) {
-        match self.settings.engine {
-            Engine::QuasiNewton => self.stage(stage, x),
-            Engine::Gradient => self.papers_stage(stage, x),
+    /// What is left of the stages, by the engine that was asked for; each but the first begins at the best state so far.
+    fn stages(&mut self, x: &mut Vec<DVec3>) {
+        loop {
+            match self.settings.engine {
+                Engine::QuasiNewton => self.stage(x),
+                Engine::Gradient => self.papers_stage(x),
+            }
+            if self.pace.stage == Stage::Full {
+                break;
+            }
+            self.pace = Pace::new(Stage::Full);
+            self.go_back(x);
         }
     }
 
-    /// One stage as the paper has it, from the best state so far: all elements below the threshold, until there are none;
-    /// shape alone only as long as that gains something.
-    fn papers_stage(&mut self, stage: Stage, x: &mut Vec<DVec3>) {
-        x.clone_from(&self.best.x);
-        self.costs.clone_from(&self.best.costs);
-        let mut idle = 0;
-        while !self.stopped && self.sweeps < self.settings.max_sweeps && (stage == Stage::Full || idle < 2) {
-            let (before, first) = (self.lowest(stage), self.sweeps);
-            let active = activate(self.problem, &self.costs, stage, self.settings.threshold, RINGS);
-            self.densify(&active, x);
-            let patch = Patch::new(self.problem, &active, &self.density);
-            self.round(stage, &patch, x);
-            self.survey(&patch.elements, x);
-            idle = if self.lowest(stage) - before < PROGRESS { idle + 1 } else { 0 };
+    /// One stage as the paper has it: all elements below the threshold, until there are none; shape alone only as long as that
+    /// gains something.
+    fn papers_stage(&mut self, x: &mut Vec<DVec3>) {
+        let stage = self.pace.stage;
+        while self.goes_on() && (stage == Stage::Full || self.pace.idle < 2) {
+            let first = self.sweeps;
+            let active = activate(self.problem, &self.costs, stage, [self.settings.threshold; 2], RINGS);
+            self.round(&active, x);
             if self.sweeps == first {
                 break; // every node is above the threshold
             }
+            self.keep(x);
         }
     }
 
-    /// One stage, from the best state so far.
-    fn stage(&mut self, stage: Stage, x: &mut Vec<DVec3>) {
-        x.clone_from(&self.best.x);
-        self.costs.clone_from(&self.best.costs);
-        let (mut idle, mut low_rings, mut focused) = (0, RINGS, false);
-        while !self.stopped && self.sweeps < self.settings.max_sweeps {
-            let before = self.lowest(stage);
-            let low = before < LOW;
-            let (level, rings) = match (low, focused) {
-                (true, _) => (LOW, low_rings),
-                (false, true) => ((before + FOCUS).min(self.settings.threshold), FOCUS_RINGS),
-                (false, false) => (self.settings.threshold, RINGS),
+    /// One stage.
+    fn stage(&mut self, x: &mut Vec<DVec3>) {
+        let stage = self.pace.stage;
+        while self.goes_on() {
+            let (low, focused) = (self.lowest() < LOW, self.pace.focused);
+            let (levels, rings) = match (low, focused) {
+                (true, _) => ([LOW; 2], self.pace.low_rings),
+                (false, true) => (self.focus(), FOCUS_RINGS),
+                (false, false) => ([self.settings.threshold; 2], RINGS),
             };
-            let active = activate(self.problem, &self.costs, stage, level, rings);
+            let active = activate(self.problem, &self.costs, stage, levels, rings);
             if active.is_empty() {
                 break;
             }
-            self.densify(&active, x);
-            let patch = Patch::new(self.problem, &active, &self.density);
-            self.round(stage, &patch, x);
-            self.survey(&patch.elements, x);
-            idle = if self.lowest(stage) - before < PROGRESS { idle + 1 } else { 0 };
-            if idle < if focused { PATIENCE } else { 2 } {
-                continue;
-            }
-            idle = 0;
-            match (low, focused) {
-                (true, _) if low_rings < MOST_RINGS => low_rings *= 2,
-                (false, false) if self.lowest(stage) + FOCUS < self.settings.threshold => {
-                    focused = true;
-                    x.clone_from(&self.best.x);
-                    self.costs.clone_from(&self.best.costs);
+            self.round(&active, x);
+            if self.pace.idle >= if focused { PATIENCE } else { 2 } {
+                self.pace.idle = 0;
+                match (low, focused) {
+                    (true, _) if self.pace.low_rings < MOST_RINGS => self.pace.low_rings *= 2,
+                    (false, false) if self.lowest() + FOCUS < self.settings.threshold => {
+                        self.pace.focused = true;
+                        self.go_back(x);
+                    }
+                    _ => break,
                 }
-                _ => break,
             }
+            self.keep(x);
         }
     }
 
-    fn lowest(&self, stage: Stage) -> f64 {
-        self.costs.iter().map(|c| stage.cost(c)).fold(1.0, f64::min)
+    fn goes_on(&self) -> bool {
+        !self.stopped && self.sweeps < self.settings.max_sweeps
+    }
+
+    /// One round: a survey dense enough, a descent, and what it gained.
+    fn round(&mut self, active: &[usize], x: &mut Vec<DVec3>) {
+        let before = self.score();
+        self.densify(active, x);
+        let patch = Patch::new(self.problem, active, &self.density);
+        self.descend(&patch, x);
+        self.survey(&patch.elements, x);
+        self.pace.idle = if self.score() - before < PROGRESS { self.pace.idle + 1 } else { 0 };
+    }
+
+    /// Offers the state between two rounds to be kept; after one that was cut short there is no going on.
+    fn keep(&mut self, x: &[DVec3]) {
+        if self.goes_on() {
+            let (pace, sweeps) = (self.pace, self.sweeps);
+            let (density, x, best) = ((&self.density[..]).into(), x.into(), (&self.best.x[..]).into());
+            self.watch.checkpoint(&Checkpoint { pace, sweeps, density, x, best });
+        }
+    }
+
+    fn resume(&mut self, checkpoint: Checkpoint, x: &mut Vec<DVec3>) {
+        let closing = &self.surveys[self.surveys.len() - 1];
+        let all: Vec<usize> = (0..self.problem.element_count()).collect();
+        self.best.x = checkpoint.best.into_owned();
+        self.best.costs = self.problem.costs(closing, &self.best.x, &all);
+        self.best.summary = Summary::of(&self.best.costs);
+        *x = checkpoint.x.into_owned();
+        self.costs = self.problem.costs(closing, x, &all);
+        let densest = (self.surveys.len() - 1) as u8;
+        self.density = checkpoint.density.iter().map(|&density| density.min(densest)).collect();
+        (self.pace, self.sweeps) = (checkpoint.pace, checkpoint.sweeps);
+    }
+
+    /// Back to the best state so far.
+    fn go_back(&mut self, x: &mut Vec<DVec3>) {
+        x.clone_from(&self.best.x);
+        self.costs.clone_from(&self.best.costs);
+    }
+
+    fn lowest(&self) -> f64 {
+        self.costs.iter().map(|c| self.pace.stage.cost(c)).fold(1.0, f64::min)
+    }
+
+    fn score(&self) -> f64 {
+        let summary = Summary::of(&self.costs);
+        if self.pace.stage == Stage::Shape { summary.c_wcn } else { summary.score() }
+    }
+
+    /// The levels, `C_WCN` and `C_JAC`, below which elements are within [`FOCUS`] of the worst of their component.
+    fn focus(&self) -> [f64; 2] {
+        let summary = Summary::of(&self.costs);
+        [summary.c_wcn, summary.c_jac].map(|worst| (worst + FOCUS).min(self.settings.threshold))
     }
 
     /// Takes the costs of changed elements, and keeps the state if it is the best.
@@ -320,9 +393,10 @@ impl Run<'_, '_> {
     }
 
     /// Descends on a patch.
-    fn round(&mut self, stage: Stage, patch: &Patch, x: &mut [DVec3]) {
+    fn descend(&mut self, patch: &Patch, x: &mut [DVec3]) {
+        let stage = self.pace.stage;
         let alpha = self.settings.alpha.unwrap_or_else(|| quality::alpha(self.problem.order));
-        let delta = REGULARISATION * (LOW - self.lowest(stage)).max(0.0);
+        let delta = REGULARISATION * (LOW - self.lowest()).clamp(0.0, 1.0);
         let (shape, jacobian) = if stage == Stage::Shape { (1.0, 0.0) } else { (alpha, 1.0 - alpha) };
         let weights = Weights { shape, jacobian, density: Density { emphasis: EMPHASIS, delta } };
         let cuts = patch.elements.iter().map(|&e| self.costs[e].cut).collect();
@@ -331,13 +405,13 @@ impl Run<'_, '_> {
             |i: usize| patch.movable[i].then(|| self.constraint.anchor(patch.nodes[i])).flatten().map(|a| (i, a));
         let anchors = (0..patch.nodes.len()).filter_map(anchored).collect();
         let objective = Objective { patch, kernels, cuts, weights, anchors };
-        let progress = self.progress(stage, patch);
+        let progress = self.progress(patch);
         let left = self.settings.engine.round().min(self.settings.max_sweeps - self.sweeps);
         let first = self.sweeps;
         let (watch, stopped) = (&mut *self.watch, &mut self.stopped);
         let mut local: Vec<DVec3> = patch.nodes.iter().map(|n| x[n.index()]).collect();
         let tell = |sweep| {
-            *stopped = !watch(Progress { sweep: first + sweep, ..progress });
+            *stopped = !watch.progress(Progress { sweep: first + sweep, ..progress });
             !*stopped
         };
         self.sweeps += match self.settings.engine {
@@ -349,7 +423,8 @@ impl Run<'_, '_> {
         }
     }
 
-    fn progress(&self, stage: Stage, patch: &Patch) -> Progress {
+    fn progress(&self, patch: &Patch) -> Progress {
+        let stage = self.pace.stage;
         let worst = |&a: &usize, &b: &usize| stage.cost(&self.costs[a]).total_cmp(&stage.cost(&self.costs[b]));
         let element = patch.elements.iter().copied().min_by(worst).unwrap_or(0);
         let nodes = self.problem.nodes(element);
@@ -375,9 +450,10 @@ impl Stage {
     }
 }
 
-/// Elements below the level, and rings of elements around them.
-fn activate(problem: &Problem, costs: &[ElementCost], stage: Stage, level: f64, rings: usize) -> Vec<usize> {
-    let mut active: Vec<bool> = costs.iter().map(|c| stage.cost(c) < level).collect();
+/// Elements with a cost below its level (`C_WCN`, `C_JAC`), and rings of elements around them.
+fn activate(problem: &Problem, costs: &[ElementCost], stage: Stage, levels: [f64; 2], rings: usize) -> Vec<usize> {
+    let below = |c: &ElementCost| c.c_wcn < levels[0] || (stage == Stage::Full && c.c_jac < levels[1]);
+    let mut active: Vec<bool> = costs.iter().map(below).collect();
     for _ in 0..rings {
         let mut touched = vec![false; problem.node_count()];
         for e in (0..active.len()).filter(|&e| active[e]) {

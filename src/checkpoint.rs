@@ -1,0 +1,131 @@
+//! Checkpoint files: a state of the smoothing, and of what work it is.
+//!
+//! ```text
+//! "sagitta checkpoint 1\n"                 21 bytes
+//! fingerprint of the work                  u64, little-endian
+//! volume elements, nodes                   2 x u64
+//! state                                    smooth::Checkpoint
+//! CRC-32 of all of the above               u32
+//! ```
+
+use std::fs::File;
+use std::hash::Hasher;
+use std::io::{self, BufReader, Read, Write};
+use std::path::{Path, PathBuf};
+
+use flate2::{Crc, CrcReader, CrcWriter};
+use glam::DVec3;
+use rustc_hash::FxHasher;
+
+use crate::formats;
+use crate::smooth::Checkpoint;
+
+const MAGIC: &[u8; 21] = b"sagitta checkpoint 1\n";
+
+/// What a checkpoint belongs to: the same mesh, CAD and settings give the same number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Work {
+    fingerprint: u64,
+    elements: usize,
+    nodes: usize,
+}
+
+/// Why a checkpoint file is not gone on from.
+#[derive(Debug, thiserror::Error)]
+pub enum CheckpointError {
+    /// Not readable.
+    #[error("{file}: cannot be read: {source}", file = file.display())]
+    Io {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// Something else, or of another version.
+    #[error("{file}: is no checkpoint of this version of sagitta", file = file.display())]
+    Foreign {
+        /// The file.
+        file: PathBuf,
+    },
+    /// Cut off or changed.
+    #[error("{file}: is damaged (cut off, or its checksum is wrong); start without --resume", file = file.display())]
+    Damaged {
+        /// The file.
+        file: PathBuf,
+    },
+    /// Of another mesh, CAD, order or other settings.
+    #[error(
+        "{file}: belongs to other work: give the mesh, the CAD, the linkage and the options it was made with (--max-sweeps, \
+         --time-limit and --threads may differ)",
+        file = file.display()
+    )]
+    OtherWork {
+        /// The file.
+        file: PathBuf,
+    },
+}
+
+impl Work {
+    /// The work of smoothing from `start` with the targets `straight`; `settings` tells all else that matters.
+    #[must_use]
+    pub fn new(elements: usize, straight: &[DVec3], start: &[DVec3], settings: &str) -> Work {
+        let mut hasher = FxHasher::default();
+        hasher.write(env!("CARGO_PKG_VERSION").as_bytes());
+        hasher.write(settings.as_bytes());
+        for x in straight.iter().chain(start).flat_map(|x| x.to_array()) {
+            hasher.write_u64(x.to_bits());
+        }
+        Work { fingerprint: hasher.finish(), elements, nodes: straight.len() }
+    }
+}
+
+/// Writes a checkpoint; the file appears under its name only when it is complete.
+///
+/// # Errors
+/// [`formats::Error::Io`].
+pub fn write(path: &Path, work: &Work, checkpoint: &Checkpoint) -> Result<(), formats::Error> {
+    formats::write_file(path, |out| {
+        let mut sum = CrcWriter::new(out);
+        sum.write_all(MAGIC)?;
+        for number in [work.fingerprint, work.elements as u64, work.nodes as u64] {
+            sum.write_all(&number.to_le_bytes())?;
+        }
+        checkpoint.write(&mut sum)?;
+        let crc = sum.crc().sum();
+        sum.into_inner().write_all(&crc.to_le_bytes())
+    })
+}
+
+/// Reads the checkpoint of `work`.
+///
+/// # Errors
+/// [`CheckpointError`].
+pub fn read(path: &Path, work: &Work) -> Result<Checkpoint<'static>, CheckpointError> {
+    let file = path.to_owned();
+    let failed = |source: io::Error| match source.kind() {
+        io::ErrorKind::UnexpectedEof => CheckpointError::Damaged { file: path.to_owned() },
+        _ => CheckpointError::Io { file: path.to_owned(), source },
+    };
+    let mut input = CrcReader::new(BufReader::new(File::open(path).map_err(failed)?));
+    let mut magic = Vec::new();
+    input.by_ref().take(MAGIC.len() as u64).read_to_end(&mut magic).map_err(failed)?;
+    if magic != MAGIC {
+        return Err(CheckpointError::Foreign { file });
+    }
+    for expected in [work.fingerprint, work.elements as u64, work.nodes as u64] {
+        let mut number = [0; 8];
+        input.read_exact(&mut number).map_err(failed)?;
+        if u64::from_le_bytes(number) != expected {
+            return Err(CheckpointError::OtherWork { file });
+        }
+    }
+    let checkpoint = Checkpoint::read(&mut input, work.elements, work.nodes).map_err(failed)?;
+    let found = Crc::sum(input.crc());
+    let mut stored = [0; 4];
+    input.read_exact(&mut stored).map_err(failed)?;
+    let more = input.read(&mut [0]).map_err(failed)?;
+    if u32::from_le_bytes(stored) != found || more > 0 {
+        return Err(CheckpointError::Damaged { file });
+    }
+    Ok(checkpoint)
+}

@@ -1,0 +1,58 @@
+//! Which elements may be curved: those within a number of layers off the curved walls.
+
+use std::num::NonZeroUsize;
+
+use glam::DVec3;
+
+use crate::associate::{Association, Boundary, Host};
+use crate::elevate::Elevated;
+use crate::mesh::{Mesh, NodeId};
+use crate::periodic::Ties;
+use crate::project::Projected;
+
+/// Keeps all elements straight that lie beyond so many layers of elements off the curved walls. The first layer are the
+/// elements that touch a curved wall, each next one those that touch a node of the layers before it. The nodes of the
+/// elements beyond get the host [`Host::Straight`], and the displacement ends before them ([`Projected::beyond`]).
+pub fn leave_straight_beyond(
+    layers: NonZeroUsize,
+    elevated: &Elevated,
+    boundary: &Boundary,
+    association: &Association,
+    ties: &Ties,
+    projected: &mut Projected,
+) {
+    let mesh = &elevated.mesh;
+    let mut near = vec![false; mesh.points.len()];
+    for (host, corners) in association.faces.iter().zip(&boundary.corners) {
+        if matches!(host, Host::Surface(_)) && association.plane_of(*host).is_none() {
+            corners.iter().for_each(|n| near[n.index()] = true);
+        }
+    }
+    let elements: Vec<&[NodeId]> = mesh.blocks_of(3).flat_map(|(_, block)| block.elements(mesh.order)).collect();
+    let mut within = vec![false; elements.len()];
+    for _ in 0..layers.get() {
+        ties.spread(&mut near);
+        for (within, nodes) in within.iter_mut().zip(&elements) {
+            *within |= nodes.iter().any(|n| near[n.index()]);
+        }
+        let reached = elements.iter().zip(&within).filter(|(_, within)| **within);
+        reached.flat_map(|(nodes, _)| *nodes).for_each(|n| near[n.index()] = true);
+    }
+    let mut held = vec![false; mesh.points.len()];
+    let beyond = elements.iter().zip(&within).filter(|(_, within)| !**within);
+    beyond.flat_map(|(nodes, _)| *nodes).for_each(|n| held[n.index()] = true);
+    ties.spread(&mut held);
+    for n in (0..held.len()).filter(|&n| held[n]) {
+        projected.hosts[n] = Host::Straight;
+        projected.displacement[n] = DVec3::ZERO;
+    }
+    held.truncate(elevated.linear_nodes);
+    projected.beyond = held;
+}
+
+/// Whether each volume element is straight: all its nodes are where its corners alone would put them.
+#[must_use]
+pub fn straight_elements(mesh: &Mesh, straight: &[DVec3]) -> Vec<bool> {
+    let is = |nodes: &[NodeId]| nodes.iter().all(|n| mesh.points[n.index()] == straight[n.index()]);
+    mesh.blocks_of(3).flat_map(|(_, block)| block.elements(mesh.order)).map(is).collect()
+}

@@ -1,0 +1,75 @@
+//! A state of the smoothing between two rounds, as bytes.
+//!
+//! Costs are not kept: they follow from the places of the nodes.
+
+use std::borrow::Cow;
+use std::io::{self, Read, Write};
+
+use glam::DVec3;
+
+use super::stages::{Pace, Stage};
+
+/// All that smoothing needs to go on as if it had not been interrupted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Checkpoint<'a> {
+    pub(super) pace: Pace,
+    pub(super) sweeps: usize,
+    /// Each volume element's survey.
+    pub(super) density: Cow<'a, [u8]>,
+    /// Places of all nodes.
+    pub(super) x: Cow<'a, [DVec3]>,
+    /// Places of all nodes in the best state so far.
+    pub(super) best: Cow<'a, [DVec3]>,
+}
+
+impl Checkpoint<'_> {
+    /// Sweeps so far.
+    #[must_use]
+    pub fn sweeps(&self) -> usize {
+        self.sweeps
+    }
+
+    /// Writes the state: numbers in little-endian order, places as the bits of their doubles.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
+        let Pace { stage, idle, low_rings, focused } = self.pace;
+        out.write_all(&[u8::from(stage == Stage::Full), u8::from(focused)])?;
+        for number in [idle, low_rings, self.sweeps] {
+            out.write_all(&(number as u64).to_le_bytes())?;
+        }
+        out.write_all(&self.density)?;
+        for x in self.x.iter().chain(self.best.iter()).flat_map(|x| x.to_array()) {
+            out.write_all(&x.to_le_bytes())?;
+        }
+        Ok(())
+    }
+
+    /// Reads a state of a mesh with so many volume elements and nodes.
+    ///
+    /// # Errors
+    /// Those of `input`, also where it ends early.
+    pub fn read(input: &mut impl Read, elements: usize, nodes: usize) -> io::Result<Checkpoint<'static>> {
+        let [full, focused] = array(input)?;
+        let stage = if full == 1 { Stage::Full } else { Stage::Shape };
+        let mut number = || array(input).map(|bytes| u64::from_le_bytes(bytes) as usize);
+        let pace = Pace { stage, idle: number()?, low_rings: number()?, focused: focused == 1 };
+        let sweeps = number()?;
+        let mut density = vec![0; elements];
+        input.read_exact(&mut density)?;
+        let mut place = || -> io::Result<DVec3> {
+            let mut coordinate = || array(input).map(f64::from_le_bytes);
+            Ok(DVec3::new(coordinate()?, coordinate()?, coordinate()?))
+        };
+        let x = (0..nodes).map(|_| place()).collect::<io::Result<Vec<DVec3>>>()?;
+        let best = (0..nodes).map(|_| place()).collect::<io::Result<Vec<DVec3>>>()?;
+        Ok(Checkpoint { pace, sweeps, density: density.into(), x: x.into(), best: best.into() })
+    }
+}
+
+fn array<const N: usize>(input: &mut impl Read) -> io::Result<[u8; N]> {
+    let mut bytes = [0; N];
+    input.read_exact(&mut bytes)?;
+    Ok(bytes)
+}
