@@ -139,6 +139,7 @@ impl<R: BufRead> Scanner<R> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use crate::{Code, Findings};
 

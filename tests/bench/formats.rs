@@ -61,7 +61,10 @@ fn table() -> Result<(), Box<dyn Error>> {
 
 fn row(name: &str, path: &Path, written: Option<f64>) -> Result<(), Box<dyn Error>> {
     let options = ReadOptions { reader: std::env::current_exe()? };
-    let read = best(|| Ok(drop(formats::read_with(path, &options)?)))?;
+    let read = best(|| {
+        formats::read_with(path, &options)?;
+        Ok(())
+    })?;
     let size = std::fs::metadata(path)?.len() as f64 / 1e6;
     let written = written.map_or_else(|| "-".to_owned(), |seconds| format!("{:.0}", size / seconds));
     println!("| {name} | {size:.0} | {:.0} | {written} |", size / read);
