@@ -149,6 +149,7 @@ fn bad_files_are_told_of_within_seconds_and_bounds() {
         ("negative.xml", good.replacen("1 98 318 9\n", "1 98 -318 9\n", 1), false, "ML203"),
         ("zero.xml", good.replacen("1 98 318 9\n", "1 98 0 9\n", 1), false, "ML203"),
         ("empty.xml", String::new(), false, "ML001"),
+        ("nothing.xml", "<MeshLink version=\"1.0\" xmlns=\"https://cadence.com\"/>".to_owned(), false, "ML108"),
     ];
     let (mesh, cad, output) =
         (fixture("cylinder_bl", "msh"), fixture("cylinder_bl", "step"), dir.path().join("out.msh"));

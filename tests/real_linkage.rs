@@ -313,6 +313,7 @@ fn the_sphere_with_its_mesh() {
             ("MeshEdge", 0, Content(|c| first_index(c, "27")), Code::EdgeNotInMesh, Changed, LOST),
             ("MeshPointReference", 0, Content(|c| first_index(c, "28")), Code::IndexBeyondMesh, Changed, &[]),
             ("MeshPointReference", 0, Content(|c| first_index(c, "14")), Code::StrayPoint, Changed, &[]),
+            ("ParamVertex", 0, Set("vref", "28"), Code::IndexBeyondMesh, Changed, &[]),
             ("MeshPointReference", 0, Set("gref", "999"), Code::DanglingReference, Changed, &[]),
             ("GeometryGroup", 0, Content(|c| format!("{c} 22")), Code::NestedGroup, Changed, &[]),
         ],

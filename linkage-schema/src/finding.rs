@@ -69,7 +69,7 @@ macro_rules! codes {
 
 codes! {
     /// The file is not XML, is broken or cut off, or is no MeshLink document; nothing else was checked.
-    Unreadable = "ML001", Error, "mend the place, or write the file anew";
+    Unreadable = "ML001", Error, "then validate again, as nothing else was checked";
     /// The elements are in another namespace than MeshLink's; they are read by their local names.
     ForeignNamespace = "ML101", Warning, "put xmlns=\"https://cadence.com\" on the root element";
     /// An element that the format does not have at this place; it is skipped.

@@ -1,11 +1,15 @@
 //! What needs neither mesh nor CAD beyond the document's own consistency: faces given twice, strings that are no path.
 
-use linkage_schema::{Code, Findings, ModelLinks, Origin};
+use linkage_schema::{Code, Document, Findings, ModelLinks, Origin};
 
 use super::called;
 use crate::associate::paths;
 
-pub(super) fn check(models: &[&ModelLinks<'_>], findings: &mut Findings) {
+pub(super) fn check(document: &Document, models: &[&ModelLinks<'_>], findings: &mut Findings) {
+    if models.is_empty() {
+        findings
+            .push(Code::EmptyElement, document.origin, || "MeshLink links nothing: it has no mesh model".to_owned());
+    }
     for links in models {
         repeated_faces(links, findings);
         broken_strings(links, findings);

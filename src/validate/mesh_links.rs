@@ -1,6 +1,6 @@
 //! Faces, edges and points of the file that the mesh does not have, or not on its boundary.
 
-use linkage_schema::{Code, Encoding, Findings, ModelLinks, Origin, PointRun, SheetLinks, StringLinks};
+use linkage_schema::{Code, Encoding, Findings, ModelLinks, Origin, PointRun, SheetLinks, StringLinks, VertexRef};
 use rustc_hash::FxHashSet;
 
 use super::called;
@@ -25,6 +25,21 @@ pub(super) fn check(linked: &LinkedMesh<'_>, models: &[&ModelLinks<'_>], finding
             points(linked, point.run, findings);
         }
         names(linked, links, findings);
+        vertices(linked, links, findings);
+    }
+}
+
+/// Parameter vertices of points that the mesh does not have, where no faces or edges beside them tell.
+fn vertices(linked: &LinkedMesh<'_>, links: &ModelLinks<'_>, findings: &mut Findings) {
+    let sheets = links.sheets.iter().filter(|sheet| sheet.faces.is_empty()).flat_map(SheetLinks::parameters);
+    let strings = links.strings.iter().filter(|string| string.edges.is_empty()).flat_map(StringLinks::parameters);
+    for vertex in sheets.chain(strings).chain(&links.model.parameters) {
+        let VertexRef::Index(index) = vertex.vertex else { continue };
+        if linked.node(index).is_none() {
+            findings.push(Code::IndexBeyondMesh, vertex.origin, || {
+                format!("ParamVertex is of point {index}; the mesh's go up to {}", linked.last())
+            });
+        }
     }
 }
 

@@ -192,7 +192,7 @@ pub fn validate(job: &Job) -> Result<Validation, ValidateError> {
     let resolution = linkage_schema::resolve(&reading.document);
     findings.append(&resolution.findings);
     let models: Vec<&ModelLinks<'_>> = of_this_mesh(&resolution, job.mesh.as_deref(), &mut findings);
-    alone::check(&models, &mut findings);
+    alone::check(&reading.document, &models, &mut findings);
     let geometry = Geometry::new(&reading.document, &resolution, model.as_ref(), &mut findings);
     let boundary = mesh.as_ref().map(Boundary::new).unwrap_or_default();
     if let Some(mesh) = &mesh {
