@@ -68,6 +68,7 @@ fn a_hundred_megabytes() {
         seconds.as_secs_f64(),
         grown.unwrap_or(0) / 1_000_000
     );
-    assert!(seconds < Duration::from_secs(2), "{seconds:?}");
+    // Without optimisation it is as slow as it likes.
+    assert!(cfg!(debug_assertions) || seconds < Duration::from_secs(2), "{seconds:?}");
     assert!(grown.is_none_or(|grown| grown < 2 * size), "{grown:?} bytes of memory for {size}");
 }
