@@ -103,7 +103,7 @@ pub fn write(path: &Path, work: &Work, checkpoint: &Checkpoint) -> Result<(), fo
 pub fn read(path: &Path, work: &Work) -> Result<Checkpoint<'static>, CheckpointError> {
     let file = path.to_owned();
     let failed = |source: io::Error| match source.kind() {
-        io::ErrorKind::UnexpectedEof => CheckpointError::Damaged { file: path.to_owned() },
+        io::ErrorKind::UnexpectedEof | io::ErrorKind::InvalidData => CheckpointError::Damaged { file: path.to_owned() },
         _ => CheckpointError::Io { file: path.to_owned(), source },
     };
     let mut input = CrcReader::new(BufReader::new(File::open(path).map_err(failed)?));

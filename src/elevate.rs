@@ -5,7 +5,6 @@
 //! lies in) is first met, entities of low dimension first, so that it is classified on the lowest one that holds it.
 
 use glam::DVec3;
-use rustc_hash::FxHashMap;
 
 use crate::element::{Cell, Order, basis, canonical, interior_count, interior_slots, interior_start, lattice};
 use crate::mesh::{Block, EntityKey, Mesh, NodeId, TooMany};
@@ -17,6 +16,8 @@ pub struct Elevated {
     pub mesh: Mesh,
     /// Number of nodes of the linear mesh; they come first.
     pub linear_nodes: usize,
+    /// Number of nodes up to the last on the boundary: new nodes of the boundary follow the linear nodes.
+    pub boundary_nodes: usize,
     /// The edges, faces and cells that hold new nodes, one list a cell kind.
     pub carriers: Vec<Carriers>,
 }
@@ -32,6 +33,41 @@ pub struct Carriers {
     first: Vec<NodeId>,
     /// Weights of the corners at each of the new nodes.
     weights: Vec<Vec<f64>>,
+}
+
+/// Carriers by their first corner: lists through all carriers of a kind, 4 bytes a carrier where a hash table takes 40.
+#[derive(Default)]
+struct Chains {
+    /// The newest carrier of each linear node, and the one before each; `u32::MAX` ends a list.
+    newest: Vec<u32>,
+    before: Vec<u32>,
+}
+
+impl Chains {
+    /// The carrier with these corners in canonical order.
+    fn find(&self, carriers: &Carriers, corners: &[NodeId]) -> Option<NodeId> {
+        let stride = corners.len();
+        let mut at = *self.newest.get(corners[0].index())?;
+        while at != u32::MAX {
+            let own = at as usize;
+            if carriers.corners[own * stride..][..stride] == *corners {
+                return Some(carriers.first[own]);
+            }
+            at = self.before[own];
+        }
+        None
+    }
+
+    /// Takes in the carrier that was made last.
+    fn push(&mut self, linear_nodes: usize, first_corner: NodeId) {
+        if self.newest.is_empty() {
+            self.newest = vec![u32::MAX; linear_nodes];
+        }
+        let newest = &mut self.newest[first_corner.index()];
+        let own = self.before.len() as u32; // fewer carriers than new nodes, and these fit 32 bits
+        self.before.push(*newest);
+        *newest = own;
+    }
 }
 
 impl Carriers {
@@ -61,6 +97,13 @@ impl Carriers {
         &self.weights
     }
 
+    /// A carrier by its number: corners, and first new node.
+    #[must_use]
+    pub fn get(&self, carrier: usize) -> (&[NodeId], NodeId) {
+        let corners = self.cell.corner_count();
+        (&self.corners[carrier * corners..][..corners], self.first[carrier])
+    }
+
     /// The carriers: corners, and first new node.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (&[NodeId], NodeId)> {
         self.corners.chunks_exact(self.cell.corner_count()).zip(self.first.iter().copied())
@@ -74,14 +117,18 @@ impl Carriers {
 pub fn elevate(linear: &Mesh, order: Order) -> Result<Elevated, TooMany> {
     let mut builder = Builder::new(linear, order);
     let mut blocks: Vec<Option<Block>> = vec![None; linear.blocks.len()];
+    let mut boundary_nodes = linear.points.len();
     for dimension in 0..=3 {
+        if dimension == 3 {
+            boundary_nodes = builder.mesh.points.len();
+        }
         for (place, block) in linear.blocks_of(dimension) {
             blocks[place] = Some(builder.block(block)?);
         }
     }
     let mut mesh = builder.mesh;
     mesh.blocks = blocks.into_iter().flatten().collect();
-    Ok(Elevated { mesh, linear_nodes: linear.points.len(), carriers: builder.carriers })
+    Ok(Elevated { mesh, linear_nodes: linear.points.len(), boundary_nodes, carriers: builder.carriers })
 }
 
 struct Builder {
@@ -89,8 +136,9 @@ struct Builder {
     mesh: Mesh,
     next_tag: u64,
     carriers: Vec<Carriers>,
-    /// First new node of the carriers that several elements share, by corners in canonical order.
-    known: FxHashMap<[NodeId; 4], NodeId>,
+    linear_nodes: usize,
+    /// The carriers that several elements share: edges, triangles and quadrilaterals.
+    chains: [Chains; Cell::ALL.len()],
 }
 
 impl Builder {
@@ -111,7 +159,8 @@ impl Builder {
         };
         let next_tag = linear.node_tags.iter().max().map_or(1, |tag| tag + 1);
         let carriers = Cell::ALL.iter().map(|&cell| Carriers::new(cell, order)).collect();
-        Builder { order, mesh, next_tag, carriers, known: FxHashMap::default() }
+        let (linear_nodes, chains) = (linear.points.len(), Default::default());
+        Builder { order, mesh, next_tag, carriers, linear_nodes, chains }
     }
 
     fn block(&mut self, linear: &Block) -> Result<Block, TooMany> {
@@ -169,11 +218,12 @@ impl Builder {
         for (slot, &q) in key.iter_mut().zip(&seen[..corners.len()]) {
             *slot = corners[usize::from(q)];
         }
-        let first = match self.known.get(&key) {
-            Some(&first) => first,
+        let key = &key[..corners.len()];
+        let first = match self.chains[cell as usize].find(&self.carriers[cell as usize], key) {
+            Some(first) => first,
             None => {
-                let first = self.create(cell, &key[..corners.len()], entity)?;
-                self.known.insert(key, first);
+                let first = self.create(cell, key, entity)?;
+                self.chains[cell as usize].push(self.linear_nodes, key[0]);
                 first
             }
         };

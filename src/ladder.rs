@@ -51,6 +51,8 @@ pub struct Climbed {
     pub given_up: Vec<GivenUp>,
     /// The proof.
     pub certificate: Certificate,
+    /// The straight places of all nodes.
+    pub straight: Vec<DVec3>,
 }
 
 impl Ladder<'_> {
@@ -61,10 +63,14 @@ impl Ladder<'_> {
         smoothed: &mut Smoothed,
         mut watch: impl FnMut(smooth::Progress) -> bool,
     ) -> Climbed {
+        let mut certificate = self.certified(&mut places);
+        if certificate.holds() {
+            let straight = std::mem::replace(&mut self.elevated.mesh.points, places);
+            return Climbed { given_up: Vec::new(), certificate, straight };
+        }
         let straight = self.elevated.mesh.points.clone();
         let linear_nodes = self.elevated.linear_nodes;
         let mut shares = vec![1.0; straight.len()];
-        let mut certificate = self.certified(&mut places, &straight);
         for rung in 0..=ROUNDS {
             if certificate.holds() || smoothed.stopped {
                 break;
@@ -73,7 +79,7 @@ impl Ladder<'_> {
                 self.take_back(rung, &certificate, &straight, &mut places, &mut shares);
             }
             self.smooth_again(smoothed, &straight, &shares, &mut places, &mut watch);
-            certificate = self.certified(&mut places, &straight);
+            certificate = self.certified(&mut places);
         }
         self.elevated.mesh.points = places;
         let mesh = &mut self.elevated.mesh;
@@ -87,14 +93,14 @@ impl Ladder<'_> {
         if !untouched {
             smoothed.survey(&Problem::new(mesh, &straight), &mesh.points, self.settings.survey_factor);
         }
-        Climbed { given_up: off, certificate }
+        Climbed { given_up: off, certificate, straight }
     }
 
     /// What is proven of the mesh with its nodes at `places`.
-    fn certified(&mut self, places: &mut Vec<DVec3>, straight: &[DVec3]) -> Certificate {
+    fn certified(&mut self, places: &mut Vec<DVec3>) -> Certificate {
         let mesh = &mut self.elevated.mesh;
         std::mem::swap(&mut mesh.points, places);
-        let linear = &straight[..self.elevated.linear_nodes];
+        let linear = &places[..self.elevated.linear_nodes];
         let certificate = certify::mesh(mesh, Some(linear), &certify::Settings::default());
         std::mem::swap(&mut mesh.points, places);
         certificate
@@ -149,7 +155,9 @@ impl Ladder<'_> {
         for (n, share) in own.into_iter().enumerate() {
             if share < 1.0 {
                 shares[n] *= share;
-                self.projected.displacement[n] *= share;
+                if let Some(displacement) = self.projected.displacement.get_mut(n) {
+                    *displacement *= share;
+                }
                 places[n] = straight[n] + (places[n] - straight[n]) * share;
             }
         }
@@ -161,7 +169,7 @@ impl Ladder<'_> {
     }
 
     fn on_wall(&self, node: usize) -> bool {
-        let host = self.projected.hosts[node];
+        let host = self.projected.host(node);
         matches!(host, Host::Surface(_) | Host::Curve(_)) && self.association.plane_of(host).is_none()
     }
 

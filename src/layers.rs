@@ -42,6 +42,8 @@ pub fn leave_straight_beyond(
     let beyond = elements.iter().zip(&within).filter(|(_, within)| !**within);
     beyond.flat_map(|(nodes, _)| *nodes).for_each(|n| held[n.index()] = true);
     ties.spread(&mut held);
+    projected.hosts.resize(held.len(), Host::Free);
+    projected.displacement.resize(held.len(), DVec3::ZERO);
     for n in (0..held.len()).filter(|&n| held[n]) {
         projected.hosts[n] = Host::Straight;
         projected.displacement[n] = DVec3::ZERO;

@@ -156,8 +156,9 @@ fn new_pairs(elevated: &Elevated, boundary: &Boundary, record: &Periodic) -> Vec
     let mut pairs = Vec::new();
     for cell in [Cell::Line, Cell::Triangle, Cell::Quad] {
         let carriers = &elevated.carriers[cell as usize];
-        let known: FxHashMap<&[NodeId], NodeId> = carriers.iter().collect();
-        for (corners, first) in carriers.iter().filter(|(corners, _)| own.contains(*corners)) {
+        let on_boundary = || carriers.iter().take_while(|(_, first)| first.index() < elevated.boundary_nodes);
+        let known: FxHashMap<&[NodeId], NodeId> = on_boundary().collect();
+        for (corners, first) in on_boundary().filter(|(corners, _)| own.contains(*corners)) {
             let Some(images) = corners.iter().map(|n| masters.get(n).copied()).collect::<Option<Vec<_>>>() else {
                 continue;
             };

@@ -230,6 +230,7 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
     clock.step(Step::Elevate);
     let mut elevated =
         elevate(&linear, job.order).map_err(|cause| PipelineError::TooMany { mesh: job.mesh.clone(), cause })?;
+    drop(linear);
     let (ties, notes) = Ties::new(&mut elevated, &boundary, job.freeze_linear);
     association.notes.extend(notes);
 
@@ -245,18 +246,18 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
     ties.apply(&mut places);
 
     clock.step(Step::Smooth);
-    let straight = elevated.mesh.points.clone();
-    let problem = Problem::new(&elevated.mesh, &straight);
+    let straight = &elevated.mesh.points;
+    let problem = Problem::new(&elevated.mesh, straight);
     let constraint = CadConstraint::new(
         &association,
-        &straight,
+        straight,
         &projected,
         &ties,
         elevated.linear_nodes,
         job.freeze_walls,
         job.freeze_linear,
     );
-    let work = job.work(&problem, &straight, &places);
+    let work = job.work(&problem, straight, &places);
     let resumed = job.resume.as_deref().map(|path| checkpoint::read(path, &work)).transpose()?;
     let mut told = Told { observer: clock.observer, work };
     let mut smoothed = smooth(&problem, &constraint, &job.smoothing, &mut places, resumed, &mut told);
@@ -272,7 +273,7 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
         freeze_walls: job.freeze_walls,
         freeze_linear: job.freeze_linear,
     };
-    let Climbed { given_up, certificate } =
+    let Climbed { given_up, certificate, straight } =
         ladder.climb(places, &mut smoothed, |progress| clock.observer.progress(&progress));
     let Elevated { mesh, linear_nodes, .. } = elevated;
     let walls = walls(&mesh, &straight, &boundary, &association);

@@ -29,9 +29,9 @@ const SLIDE: f64 = 1e-3;
 /// Hosts and places of all nodes after projection.
 #[derive(Clone, Debug)]
 pub struct Projected {
-    /// Host of every node of the elevated mesh.
+    /// Host of every node up to [`Elevated::boundary_nodes`]; the nodes after them are free.
     pub hosts: Vec<Host>,
-    /// Displacement of every boundary node from its straight place to its CAD group; zero for the others.
+    /// Displacement of every boundary node from its straight place to its CAD group; zero for the others, as many as hosts.
     pub displacement: Vec<DVec3>,
     /// Size of the edge or face around every node inside a boundary edge or face, by node.
     pub sizes: FxHashMap<usize, f64>,
@@ -43,12 +43,20 @@ pub struct Projected {
     pub unproven: usize,
 }
 
+impl Projected {
+    /// The host of any node.
+    #[must_use]
+    pub fn host(&self, node: usize) -> Host {
+        self.hosts.get(node).copied().unwrap_or(Host::Free)
+    }
+}
+
 /// Projects the boundary nodes of an elevated mesh.
 ///
 /// With `freeze_linear` the linear nodes stay where they are, on the CAD or not.
 #[must_use]
 pub fn project(elevated: &Elevated, boundary: &Boundary, association: &Association, freeze_linear: bool) -> Projected {
-    let nodes = elevated.mesh.points.len();
+    let nodes = elevated.boundary_nodes;
     let mut hosts = association.nodes.clone();
     hosts.resize(nodes, Host::Free);
     let mut projector = Projector {
@@ -111,8 +119,9 @@ impl Projector<'_> {
         let order = self.elevated.mesh.order;
         let inner = interior_count(Cell::Line, order);
         let carriers = &self.elevated.carriers[Cell::Line as usize];
+        let on_boundary = carriers.iter().take_while(|(_, first)| first.index() < self.elevated.boundary_nodes);
         let known: FxHashMap<[NodeId; 2], NodeId> =
-            carriers.iter().map(|(ends, first)| ([ends[0], ends[1]], first)).collect();
+            on_boundary.map(|(ends, first)| ([ends[0], ends[1]], first)).collect();
         for (edge, &ends) in boundary.edges.iter().enumerate() {
             let (host, Some(&first)) = (self.association.edges[edge], known.get(&ends)) else { continue };
             let places = self.spread(host, ends, order);
@@ -250,7 +259,7 @@ impl<'a> CadConstraint<'a> {
 
 impl Constraint for CadConstraint<'_> {
     fn freedom(&self, node: NodeId, at: DVec3) -> Freedom {
-        let host = self.projected.hosts[node.index()];
+        let host = self.projected.host(node.index());
         if node.index() < self.linear_nodes && (self.freeze_linear || host != Host::Free) {
             return Freedom::Fixed;
         }
@@ -280,7 +289,7 @@ impl Constraint for CadConstraint<'_> {
     }
 
     fn restrict(&self, node: NodeId, from: DVec3, wish: DVec3) -> DVec3 {
-        let host = self.projected.hosts[node.index()];
+        let host = self.projected.host(node.index());
         if let Some(plane) = self.association.plane_of(host) {
             return plane.closest(wish);
         }
@@ -293,7 +302,7 @@ impl Constraint for CadConstraint<'_> {
 
     fn anchor(&self, node: NodeId) -> Option<Anchor> {
         let n = node.index();
-        let host = self.projected.hosts[n];
+        let host = self.projected.host(n);
         group_of(self.association, host).filter(|_| self.association.plane_of(host).is_none())?;
         let size = self.projected.sizes.get(&n)?;
         Some(Anchor { place: self.straight[n] + self.projected.displacement[n], slack: SLIDE * size })

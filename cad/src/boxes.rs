@@ -53,6 +53,11 @@ impl Aabb {
         if self.is_empty() { 0.0 } else { (self.max - self.min).length() }
     }
 
+    /// Distance from `x` to the farthest corner; 0 for an empty box.
+    pub(crate) fn farthest(&self, x: DVec3) -> f64 {
+        if self.is_empty() { 0.0 } else { (x - self.min).max(self.max - x).length() }
+    }
+
     /// Square of the distance from `x` to the box; 0 inside.
     pub fn distance_squared(&self, x: DVec3) -> f64 {
         (self.min - x).max(x - self.max).max(DVec3::ZERO).length_squared()
@@ -83,6 +88,34 @@ pub struct Nearest {
     pub leaf: usize,
     /// Square of its distance, as the visitor gave it.
     pub distance_squared: f64,
+}
+
+/// A part of the tree: one leaf, or all below a node. In one number, as feet keep several.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Branch(u32);
+
+impl Branch {
+    /// All of a tree.
+    pub(crate) const ROOT: Self = Self(Self::NODE);
+    const NODE: u32 = 1 << 31;
+
+    pub(crate) fn leaf(leaf: usize) -> Self {
+        Self(leaf as u32)
+    }
+
+    /// The leaf, or the node.
+    pub(crate) fn split(self) -> Result<usize, usize> {
+        if self.0 & Self::NODE == 0 { Ok(self.0 as usize) } else { Err((self.0 & !Self::NODE) as usize) }
+    }
+}
+
+/// What a [walk](BoxTree::walk) meets.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Met {
+    /// A leaf whose box is near enough.
+    Leaf(usize),
+    /// A part that is skipped, and the squared distance of its box.
+    Skipped(Branch, f64),
 }
 
 const LEAVES_PER_NODE: usize = 4;
@@ -144,33 +177,36 @@ impl BoxTree {
         self.nodes.first().map_or(Aabb::EMPTY, |node| node.bounds)
     }
 
-    /// Visits leaves, nearer branches first, whose box is at most `sqrt(bound)` away from `x`. The visitor gets the leaf's index and
-    /// the present bound and returns the new bound (squared distance): what lies farther away is skipped from then on.
-    ///
-    /// Returns a lower bound of the squared distance of everything skipped; infinite where nothing was.
-    pub fn visit(&self, x: DVec3, mut bound: f64, mut visitor: impl FnMut(usize, f64) -> f64) -> f64 {
-        let mut skipped = f64::INFINITY;
+    /// Box around the leaves below a node.
+    pub(crate) fn bounds_below(&self, node: usize) -> Aabb {
+        self.nodes[node].bounds
+    }
+
+    /// Visits the leaves below node `root` (0 is the whole tree), nearer branches first, whose box is at most `sqrt(bound)` away from `x`,
+    /// and tells what is skipped. After each leaf the visitor returns the new bound (squared distance).
+    pub(crate) fn walk(&self, root: usize, x: DVec3, mut bound: f64, mut visitor: impl FnMut(Met) -> f64) {
         if self.nodes.is_empty() {
-            return skipped;
+            return;
         }
         let mut stack = [(0_u32, 0.0_f64); STACK];
-        stack[0].1 = self.nodes[0].bounds.distance_squared(x);
+        stack[0] = (root as u32, self.nodes[root].bounds.distance_squared(x));
         let mut depth = 1;
         while depth > 0 {
             depth -= 1;
             let (index, distance) = stack[depth];
             if distance > bound {
-                skipped = skipped.min(distance);
+                visitor(Met::Skipped(Branch(index | Branch::NODE), distance));
                 continue;
             }
             let node = &self.nodes[index as usize];
             if node.count > 0 {
                 for at in node.first..node.first + node.count {
                     let distance = self.boxes[at as usize].distance_squared(x);
+                    let leaf = self.order[at as usize];
                     if distance <= bound {
-                        bound = visitor(self.order[at as usize] as usize, bound);
+                        bound = visitor(Met::Leaf(leaf as usize));
                     } else {
-                        skipped = skipped.min(distance);
+                        visitor(Met::Skipped(Branch(leaf), distance));
                     }
                 }
                 continue;
@@ -182,7 +218,6 @@ impl BoxTree {
             stack[depth + 1] = near;
             depth += 2;
         }
-        skipped
     }
 
     /// The nearest leaf to `x` not farther than `sqrt(bound)`. `distance_squared(leaf)` is the exact squared distance of a leaf, or `None` for
@@ -193,13 +228,15 @@ impl BoxTree {
         bound: f64,
         mut distance_squared: impl FnMut(usize) -> Option<f64>,
     ) -> Option<Nearest> {
-        let mut best: Option<Nearest> = None;
-        self.visit(x, bound, |leaf, bound| {
+        let (mut bound, mut best) = (bound, None::<Nearest>);
+        self.walk(0, x, bound, |met| {
+            let Met::Leaf(leaf) = met else { return bound };
             let Some(distance) = distance_squared(leaf).filter(|&d| d <= bound) else { return bound };
             if best.is_none_or(|b| distance < b.distance_squared || (distance == b.distance_squared && leaf < b.leaf)) {
                 best = Some(Nearest { leaf, distance_squared: distance });
             }
-            bound.min(distance)
+            bound = bound.min(distance);
+            bound
         });
         best
     }

@@ -46,7 +46,10 @@ pub struct Outcome {
 pub enum ChildError {
     /// It took longer than it may, and was ended.
     #[error("took longer than it may")]
-    TimedOut,
+    TimedOut {
+        /// What it had warned of until then.
+        warnings: Vec<String>,
+    },
     /// It could not be run.
     #[error("cannot be run: {0}")]
     Run(#[from] io::Error),
@@ -85,7 +88,7 @@ pub fn run(
     let Ok(bytes) = receiver.recv_timeout(limits.timeout) else {
         end(&mut child);
         let _ = reading.join();
-        return Err(ChildError::TimedOut);
+        return Err(ChildError::TimedOut { warnings: listening.join().unwrap_or_default() });
     };
     let status = child.wait()?;
     Ok(Outcome { bytes: bytes?, status, warnings: listening.join().unwrap_or_default() })

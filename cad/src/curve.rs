@@ -27,11 +27,10 @@ impl Hull {
         Self { points, pad: 0.0, sound: true }
     }
 
-    /// Whether all of the hull lies beyond the plane through `p` that is normal to `p − x`: then nothing in it is nearer to `x` than `p`.
-    pub(crate) fn is_beyond(&self, x: DVec3, p: DVec3, slack: f64) -> bool {
-        let distance = (p - x).length();
-        let n = (p - x) / distance;
-        self.points.iter().all(|h| (*h - x).dot(n) >= distance + self.pad - slack)
+    /// How far the hull is from `x` at least: seen along the line to `p`.
+    pub(crate) fn distance_towards(&self, x: DVec3, p: DVec3) -> f64 {
+        let Some(n) = (p - x).try_normalize() else { return 0.0 };
+        self.points.iter().map(|h| (*h - x).dot(n)).fold(f64::INFINITY, f64::min) - self.pad
     }
 
     pub(crate) fn bounds(&self) -> Aabb {

@@ -1,16 +1,18 @@
 //! The end of a search: the winner on OCCT's own geometry, polished, and how it ended.
 
+use crate::boxes::Branch;
 use crate::chart::{Jet, Rect, surface_d2};
 use crate::curve::curve_d2;
-use crate::foot::{Doubt, End, Foot, Trace};
+use crate::foot::{Doubt, End, Foot};
 use crate::group::Member;
+use crate::hint::{Hint, Leeways};
 use crate::ids::{EdgeId, EntityId, FaceId, VertexId};
 use crate::leaf::{EdgeGeometry, FaceGeometry, FaceLeaf, Side};
 use crate::model::Geometry;
 use crate::newton::{self, ROUNDING};
 use crate::search::{Best, Search};
 use crate::tolerance::{LEAF_MARGIN, ORTHOGONAL, POLISH_LIMIT, POLISHED, TIE};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 /// Golden section, and sections enough for rounding to end the search.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
@@ -19,17 +21,27 @@ const GOLDEN_STEPS: usize = 60;
 /// Samples of a pcurve before that.
 const SIDE_SAMPLES: usize = 128;
 
+/// A foot and how the search came to it.
+pub(crate) struct Landing {
+    pub(crate) foot: Foot,
+    /// The leaf it lies on.
+    best: Best,
+    /// It lies beside that leaf, within a tolerance of the file.
+    beside: bool,
+    response: [Vec3; 2],
+}
+
 impl Search<'_> {
     /// The winner, evaluated by OCCT.
-    pub(crate) fn finish(self) -> Foot {
+    pub(crate) fn finish(&self) -> Landing {
         let Some(best) = self.best else { return self.nowhere() };
-        let foot = self.finish_at(best);
-        self.within_tolerance(best, &foot).unwrap_or(foot)
+        let landing = self.finish_at(best);
+        self.within_tolerance(best, &landing.foot).unwrap_or(landing)
     }
 
     /// A nearer minimum on the surface that is outside the trim by no more than the tolerance of the edge or vertex beside it is a point of
     /// the face: the trim is not known better than that.
-    fn within_tolerance(&self, best: Best, foot: &Foot) -> Option<Foot> {
+    fn within_tolerance(&self, best: Best, foot: &Foot) -> Option<Landing> {
         let geometry = &self.group.geometry;
         let tolerance = match foot.end {
             End::OnTrim(edge) => geometry.edges[edge.index()].as_ref()?.tolerance,
@@ -45,10 +57,10 @@ impl Search<'_> {
         });
         let (outside, face, point) =
             within.min_by(|(a, ..), (b, ..)| a.distance.total_cmp(&b.distance).then(a.member.cmp(&b.member)))?;
-        Some(self.foot(best, face.into(), outside.parameters, point, foot.end))
+        Some(self.land_beside(best, face.into(), outside.parameters, point, foot.end))
     }
 
-    fn finish_at(&self, best: Best) -> Foot {
+    fn finish_at(&self, best: Best) -> Landing {
         let geometry = &self.group.geometry;
         match self.group.members[best.member] {
             Member::Face { face, leaf } => {
@@ -65,17 +77,17 @@ impl Search<'_> {
                 let at_trim = matches!(end, End::Stalled { .. }) && leaf_geometry.crossed;
                 let slid = if at_trim { self.slide_to_trim(best, face as usize) } else { None };
                 slid.unwrap_or_else(|| {
-                    let mut foot = self.foot(
+                    let mut landing = self.land(
                         Best { parameters, ..best },
                         FaceId::new(face as usize).into(),
                         parameters,
                         jet[0],
                         end,
                     );
-                    if end == End::Interior {
-                        foot.trace.response = newton::response(&jet, self.x);
+                    if end == End::Interior && self.floors.is_some() {
+                        landing.response = newton::response(&jet, self.x).map(|gradient| gradient.as_vec3());
                     }
-                    foot
+                    landing
                 })
             }
             Member::Edge { edge, owner, .. } => self.finish_edge(best, edge as usize, owner.map(|face| face as usize)),
@@ -85,39 +97,57 @@ impl Search<'_> {
                     Some(face) => (FaceId::new(face as usize).into(), geometry.corner_parameters(face as usize, id)),
                     None => (id.into(), [0.0; 2]),
                 };
-                self.foot(best, entity, parameters, geometry.vertices[vertex as usize].0, End::OnEnd(id))
+                self.land(best, entity, parameters, geometry.vertices[vertex as usize].0, End::OnEnd(id))
             }
         }
     }
 
-    fn foot(&self, best: Best, entity: EntityId, parameters: [f64; 2], point: DVec3, end: End) -> Foot {
-        let distance = point.distance(self.x);
-        Foot { point, entity, parameters, distance, end, doubt: self.doubt, trace: self.trace(Some(best)) }
+    fn land(&self, best: Best, entity: EntityId, parameters: [f64; 2], point: DVec3, end: End) -> Landing {
+        let foot = Foot { point, entity, parameters, distance: point.distance(self.x), end, doubt: self.doubt };
+        Landing { foot, best, beside: false, response: [Vec3::ZERO; 2] }
     }
 
-    fn nowhere(&self) -> Foot {
-        let entity = self.group.entities()[0];
+    fn land_beside(&self, best: Best, entity: EntityId, parameters: [f64; 2], point: DVec3, end: End) -> Landing {
+        Landing { beside: true, ..self.land(best, entity, parameters, point, end) }
+    }
+
+    fn nowhere(&self) -> Landing {
+        let best = Best { member: 0, parameters: [f64::NAN; 2], distance: f64::INFINITY };
         let end = End::Stalled { residual: f64::INFINITY };
-        Foot {
-            point: DVec3::NAN,
-            entity,
-            parameters: [f64::NAN; 2],
-            distance: f64::INFINITY,
-            end,
-            doubt: Some(Doubt::NotSearched),
-            trace: self.trace(None),
-        }
+        let mut landing = self.land_beside(best, self.group.entities()[0], best.parameters, DVec3::NAN, end);
+        landing.foot.distance = f64::INFINITY;
+        landing.foot.doubt = Some(Doubt::NotSearched);
+        landing
     }
 
-    fn trace(&self, best: Option<Best>) -> Trace {
-        Trace {
-            group: self.group.number,
-            leaf: best.map_or(0, |best| best.member as u32),
-            x: self.x,
-            others: self.others.sqrt(),
-            start: best.map_or([f64::NAN; 2], |best| best.parameters),
-            response: [DVec3::ZERO; 2],
+    /// What the next query nearby should know.
+    pub(crate) fn hint(&self, landing: &Landing) -> Hint {
+        let Landing { foot, best, response, .. } = landing;
+        if !foot.distance.is_finite() {
+            return Hint::default();
         }
+        let leeways = self.leeways(landing);
+        let leaf = best.member as u32;
+        Hint { group: self.group.number, leaf, x: self.x, start: best.parameters, response: *response, leeways }
+    }
+
+    /// The leeways of all but the leaf of the foot.
+    fn leeways(&self, landing: &Landing) -> Leeways {
+        let Some(floors) = self.floors.as_ref().filter(|_| self.doubt.is_none() && !landing.beside) else {
+            return Leeways::NONE;
+        };
+        let group = self.group;
+        let bounds = |branch: Branch| match branch.split() {
+            Ok(leaf) => group.geometry.bounds_of(group.members[leaf]),
+            Err(node) => group.boxes.bounds_below(node),
+        };
+        let at = (landing.foot.point, landing.foot.distance);
+        let mut leeways = floors.leeways(self.spared, landing.best.member, at, group.leaf_size, bounds);
+        // an edge or vertex as near as the winner took the foot
+        if let Some(winner) = self.best.filter(|winner| winner.member != landing.best.member) {
+            leeways.push(Branch::leaf(winner.member), 0.0);
+        }
+        leeways
     }
 
     fn residual_limit(&self, distance: f64) -> f64 {
@@ -139,7 +169,7 @@ impl Search<'_> {
 
     /// Where the curve of a boundary edge lies beside its pcurve on the surface (within the edge's tolerance), a point of the
     /// surface at the trim can be nearer than the curve. Finds the nearest point of the surface along the pcurves of the face.
-    fn slide_to_trim(&self, best: Best, index: usize) -> Option<Foot> {
+    fn slide_to_trim(&self, best: Best, index: usize) -> Option<Landing> {
         let face = &self.group.geometry.faces[index];
         let nearest = |side: &Side| {
             let [u, v] = side.nearest_on(face, self.x)?;
@@ -150,10 +180,10 @@ impl Search<'_> {
         let (distance, parameters, point, edge) = sides.min_by(|a, b| a.0.total_cmp(&b.0))?;
         let end = End::OnTrim(edge);
         (distance <= best.distance + self.tie())
-            .then(|| self.foot(best, FaceId::new(index).into(), parameters, point, end))
+            .then(|| self.land_beside(best, FaceId::new(index).into(), parameters, point, end))
     }
 
-    fn finish_edge(&self, best: Best, index: usize, owner: Option<usize>) -> Foot {
+    fn finish_edge(&self, best: Best, index: usize, owner: Option<usize>) -> Landing {
         let geometry = &self.group.geometry;
         let id = EdgeId::new(index);
         let Some(edge) = &geometry.edges[index] else { return self.nowhere() };
@@ -163,7 +193,7 @@ impl Search<'_> {
             let corner = geometry.ends[index][usize::from(t >= edge.range[1])];
             let at_end = t <= edge.range[0] || t >= edge.range[1];
             let end = corner.filter(|_| at_end).map_or(End::OnTrim(id), End::OnEnd);
-            return self.foot(best, FaceId::new(face).into(), parameters, jet[0], end);
+            return self.land(best, FaceId::new(face).into(), parameters, jet[0], end);
         }
         let r = jet[0] - self.x;
         let residual = tangential(r, jet[1]);
@@ -178,7 +208,7 @@ impl Search<'_> {
             let at_knot = edge.leaves.iter().any(|leaf| leaf.range.contains(&t));
             if at_knot { End::OnCrease } else { End::Stalled { residual } }
         };
-        self.foot(best, id.into(), [t, 0.0], jet[0], end)
+        self.land(best, id.into(), [t, 0.0], jet[0], end)
     }
 }
 

@@ -20,39 +20,6 @@ pub struct Foot {
     /// Why another point of the group might be nearer; `None` where the foot is proven to be the closest point (up to rounding): every
     /// leaf was either farther away or had one minimum only.
     pub doubt: Option<Doubt>,
-    /// For the next query with this foot as a hint.
-    pub(crate) trace: Trace,
-}
-
-/// What a foot remembers of its search; no part of the answer, so all traces are equal.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Trace {
-    /// Number of the group; traces of other groups are no hints.
-    pub(crate) group: u32,
-    /// Leaf of the group's tree.
-    pub(crate) leaf: u32,
-    /// The query point.
-    pub(crate) x: DVec3,
-    /// No other leaf of the group is nearer to the query point.
-    pub(crate) others: f64,
-    /// Parameters in the leaf.
-    pub(crate) start: [f64; 2],
-    /// How the parameters follow a small move of the query point: their gradients; zero where not known.
-    pub(crate) response: [DVec3; 2],
-}
-
-impl Trace {
-    /// Where Newton's method leads from the old foot for a new query point, at no evaluation.
-    pub(crate) fn follow(&self, x: DVec3) -> [f64; 2] {
-        let by = x - self.x;
-        [0, 1].map(|i| self.start[i] + self.response[i].dot(by))
-    }
-}
-
-impl PartialEq for Trace {
-    fn eq(&self, _: &Self) -> bool {
-        true
-    }
 }
 
 impl Foot {

@@ -4,6 +4,7 @@ use crate::boxes::{Aabb, BoxTree};
 use crate::chart::surface_d2;
 use crate::curve::curve_d2;
 use crate::foot::{CurvePoint, Evaluation, Foot, SurfacePoint};
+use crate::hint::Hint;
 use crate::ids::{EdgeId, EntityId, FaceId, VertexId};
 use crate::model::{Geometry, Model};
 use glam::DVec3;
@@ -64,13 +65,15 @@ pub(crate) enum Member {
 
 /// A set of faces, edges and vertices: the unit of projection. All queries may be made from many threads at once.
 pub struct Group {
-    /// Tells feet of this group from those of others.
+    /// Tells hints from this group from those of others.
     pub(crate) number: u32,
     pub(crate) geometry: Arc<Geometry>,
     entities: Vec<EntityId>,
     pub(crate) members: Vec<Member>,
     pub(crate) boxes: BoxTree,
     samples: ImmutableKdTree<f64, 3>,
+    /// How large a leaf is, on average.
+    pub(crate) leaf_size: f64,
     /// Diagonal of the model, the measure of all tolerances.
     pub(crate) diagonal: f64,
 }
@@ -162,6 +165,7 @@ impl Group {
             members,
             boxes: BoxTree::new(&boxes),
             samples,
+            leaf_size: boxes.iter().map(Aabb::diagonal).sum::<f64>() / boxes.len() as f64,
             diagonal: model.diagonal(),
         })
     }
@@ -184,10 +188,13 @@ impl Group {
         self.samples.query(&near.to_array()).nearest_one::<SquaredEuclidean<f64>>().execute().item as usize
     }
 
-    /// [`Group::closest`] for many points at once, on all threads of the current rayon pool. `hints` may be empty or hold one entry a point.
+    /// [`Group::closest`] for many points at once, on all threads of the current rayon pool. `hints` is empty or holds one a point.
     /// The answers do not depend on the number of threads.
-    pub fn closest_batch(&self, xs: &[DVec3], hints: &[Option<Foot>]) -> Vec<Foot> {
-        xs.par_iter().enumerate().map(|(i, &x)| self.closest(x, hints.get(i).and_then(Option::as_ref))).collect()
+    pub fn closest_batch(&self, xs: &[DVec3], hints: &mut [Hint]) -> Vec<Foot> {
+        if hints.len() == xs.len() {
+            return xs.par_iter().zip(hints).map(|(&x, hint)| self.closest(x, Some(hint))).collect();
+        }
+        xs.par_iter().map(|&x| self.closest(x, None)).collect()
     }
 
     /// Point and derivatives of an entity of the model at OCCT's parameters, by OCCT. `None` where OCCT cannot evaluate, the entity
@@ -242,7 +249,7 @@ fn sorted(model: &Model, ids: &[EntityId]) -> Result<Vec<EntityId>, GroupError> 
 }
 
 impl Geometry {
-    fn bounds_of(&self, member: Member) -> Aabb {
+    pub(crate) fn bounds_of(&self, member: Member) -> Aabb {
         match member {
             Member::Face { face, leaf } => self.faces[face as usize].leaves[leaf as usize].bounds,
             Member::Edge { edge, leaf, .. } => {

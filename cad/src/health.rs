@@ -4,7 +4,7 @@ use crate::ids::{EdgeId, FaceId};
 use crate::leaf::Side;
 use crate::model::{Kind, Model};
 use crate::newton;
-use crate::tolerance::{TINY, TRIM_GAP};
+use crate::tolerance::{LOOSE, TINY, TRIM_GAP};
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -122,7 +122,7 @@ impl Model {
         ends.chunk_by(|a, b| a == b).all(|same| same.len() % 2 == 0)
     }
 
-    /// The largest distance of sampled points of a pcurve from its edge, where it is beyond [`TRIM_GAP`].
+    /// The largest distance of sampled points of a pcurve from its edge, where it is beyond [`TRIM_GAP`] or [`LOOSE`].
     fn gap(&self, id: FaceId, side: &Side) -> Option<TrimFault> {
         let chart = &self.geometry().faces[id.index()].chart;
         let edge = self.edges().get(side.edge?)?;
@@ -138,7 +138,11 @@ impl Model {
             Some(locals.fold(f64::INFINITY, f64::min).sqrt())
         };
         let distance = (0..=SAMPLES).filter_map(away).fold(0.0, f64::max);
-        let allowed = TRIM_GAP * edge.tolerance.max(self.faces()[id.index()].tolerance) + 1e-9 * self.diagonal();
-        (distance > allowed).then_some(TrimFault::Gap { edge: edge.id, distance, tolerance: edge.tolerance })
+        let tolerance = TRIM_GAP * edge.tolerance.max(self.faces()[id.index()].tolerance);
+        (distance > tolerance.min(LOOSE * self.diagonal()) + 1e-9 * self.diagonal()).then_some(TrimFault::Gap {
+            edge: edge.id,
+            distance,
+            tolerance: edge.tolerance,
+        })
     }
 }

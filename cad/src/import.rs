@@ -88,12 +88,14 @@ pub enum ReadError {
         warnings: Vec<String>,
     },
     /// Reading took too long.
-    #[error("{}: reading took longer than {} s and was ended: a malformed file, or raise the time limit", path.display(), limit.as_secs_f64())]
+    #[error("{}: reading took longer than {} s and was ended: a malformed file, or raise the time limit{}", path.display(), limit.as_secs_f64(), suspects(warnings))]
     TimedOut {
         /// The CAD file.
         path: PathBuf,
         /// The limit.
         limit: Duration,
+        /// What OCCT's checks said of entities until then.
+        warnings: Vec<String>,
     },
     /// Reading needed too much memory.
     #[error("{}: reading needs more than {} MB of memory: a malformed file, or raise the limit", path.display(), limit >> 20)]
@@ -150,7 +152,7 @@ impl Model {
             Some((Answer::Failure(cause), _)) if cause.starts_with("no face") => {
                 Err(ReadError::Empty { path: owned() })
             }
-            Some((Answer::Failure(cause), _)) => Err(refused(cause)),
+            Some((Answer::Failure(cause), _)) => Err(refused(cause + &suspects(&warnings))),
             // Rust's allocator aborts where C++ throws
             None if status.signal() == Some(6) => {
                 Err(ReadError::OutOfMemory { path: owned(), limit: options.memory_limit })
@@ -169,7 +171,9 @@ fn run(path: &Path, options: &ReadOptions) -> Result<Outcome, ReadError> {
     let limits = Limits { timeout: options.timeout, memory: options.memory_limit };
     let scale = (SCALE_VARIABLE, options.scale.to_string());
     child::run(&options.reader, READER_SUBCOMMAND, path, &[scale], limits).map_err(|error| match error {
-        ChildError::TimedOut => ReadError::TimedOut { path: path.to_path_buf(), limit: options.timeout },
+        ChildError::TimedOut { warnings } => {
+            ReadError::TimedOut { path: path.to_path_buf(), limit: options.timeout, warnings }
+        }
         ChildError::Run(source) => {
             ReadError::Reader { path: path.to_path_buf(), reader: options.reader.clone(), source }
         }

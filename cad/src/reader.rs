@@ -1,11 +1,17 @@
 //! The reading child: the only process in which OCCT parses a file.
 
 use crate::assemble;
+use crate::chart::{Chart, Rect};
 use crate::child;
+use crate::curve::Curve;
 use crate::format;
 use crate::group::Group;
+use crate::ids::{EdgeId, EntityId, FaceId};
+use crate::leaf::FaceGeometry;
 use crate::model::{Model, SourceFormat};
 use crate::payload::{self, Answer, Description, RawLabel};
+use crate::tolerance::INFINITE;
+use glam::DVec3;
 use opencascade_sys as sys;
 use std::path::Path;
 use std::process::ExitCode;
@@ -68,10 +74,52 @@ fn read(path: &Path) -> Result<(Description, Vec<u8>), String> {
     Ok((description(), shape))
 }
 
+/// The first entity whose points, poles or axes are not finite. What OCCT alone evaluates is not looked at.
+fn infinite(model: &Model) -> Option<EntityId> {
+    let geometry = model.geometry();
+    let face = |id: FaceId| {
+        let FaceGeometry { chart, leaves, .. } = &geometry.faces[id.index()];
+        leaves.iter().any(|leaf| surface_is_infinite(chart, leaf.rect))
+    };
+    let edge = |id: EdgeId| {
+        let edge = geometry.edges[id.index()].as_ref();
+        edge.is_some_and(|edge| edge.leaves.iter().any(|leaf| curve_is_infinite(&edge.curve, leaf.range)))
+    };
+    let faces = model.faces().iter().map(|f| f.id).filter(|&id| face(id)).map(EntityId::Face);
+    let edges = model.edges().iter().map(|e| e.id).filter(|&id| edge(id)).map(EntityId::Edge);
+    let vertices = model.vertices().iter().filter(|v| is_infinite(v.point)).map(|v| EntityId::Vertex(v.id));
+    faces.chain(edges).chain(vertices).next()
+}
+
+fn is_infinite(p: DVec3) -> bool {
+    !(p.is_finite() && p.abs().max_element() < INFINITE)
+}
+
+fn surface_is_infinite(chart: &Chart, rect: Rect) -> bool {
+    match chart {
+        Chart::Offset { basis, .. } => surface_is_infinite(basis, rect),
+        Chart::Opaque { .. } => false,
+        _ => chart.hull(rect).points.iter().any(|&p| is_infinite(p)),
+    }
+}
+
+fn curve_is_infinite(curve: &Curve, range: [f64; 2]) -> bool {
+    match curve {
+        Curve::Offset { basis, .. } => curve_is_infinite(basis, range),
+        Curve::Opaque { .. } => false,
+        _ => curve.hull(range[0], range[1]).points.iter().any(|&p| is_infinite(p)),
+    }
+}
+
 /// Does on every entity what the parent's queries do, so that what makes OCCT crash does it here.
 fn rehearse(model: &Model) -> Result<(), String> {
     if model.faces().is_empty() && model.edges().is_empty() {
         return Err("no face and no edge came out of it".into());
+    }
+    if let Some(id) = infinite(model) {
+        let of = model.label(id).map(|label| label.reference.as_str()).filter(|reference| !reference.is_empty());
+        let known = of.map_or_else(String::new, |reference| format!(" ({reference})"));
+        return Err(format!("{id}{known} has a coordinate that is not a number, or is infinite"));
     }
     for face in model.faces() {
         let [u, v] = face.parameters;

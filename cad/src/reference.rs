@@ -36,12 +36,14 @@ pub enum ReferenceError {
         hint: String,
     },
     /// Several entities of one kind answer to it.
-    #[error("{reference:?} is ambiguous: it may be {}; take a reference that only one has, or group:NAME for all that share a name", candidates.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "))]
+    #[error("{reference:?} is ambiguous in {model}: it may be {}; take a reference that only one has, or group:NAME for all that share a name", candidates.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "))]
     Ambiguous {
         /// The text.
         reference: String,
+        /// The CAD file.
+        model: String,
         /// All that answer.
-        candidates: Vec<EntityId>,
+        candidates: Box<[EntityId]>,
     },
 }
 
@@ -87,6 +89,11 @@ impl Model {
         ReferenceError::Unknown { reference: reference.to_owned(), model: self.path().display().to_string(), hint }
     }
 
+    fn ambiguous(&self, reference: &str, candidates: Vec<EntityId>) -> ReferenceError {
+        let model = self.path().display().to_string();
+        ReferenceError::Ambiguous { reference: reference.to_owned(), model, candidates: candidates.into() }
+    }
+
     /// Entities of every kind with their labels.
     fn labelled(&self) -> impl Iterator<Item = (EntityId, &crate::Label)> {
         let faces = self.faces().iter().map(|face| (face.id.into(), &face.label));
@@ -104,10 +111,7 @@ impl Model {
             (None, _, 0) => Err(self.unknown(reference, format!("no entity has that name; {}", self.ready()))),
             (group, second, _) => {
                 let members = group.into_iter().chain(second).flat_map(|group| group.members.iter().copied());
-                Err(ReferenceError::Ambiguous {
-                    reference: reference.to_owned(),
-                    candidates: found.into_iter().chain(members).collect(),
-                })
+                Err(self.ambiguous(reference, found.into_iter().chain(members).collect()))
             }
         }
     }
@@ -117,10 +121,10 @@ impl Model {
         match found.as_slice() {
             [] => Err(self.unknown(reference, self.ready())),
             [group] => Ok(group.members.clone()),
-            several => Err(ReferenceError::Ambiguous {
-                reference: reference.to_owned(),
-                candidates: several.iter().flat_map(|group| group.members.iter().copied()).collect(),
-            }),
+            several => {
+                let members = several.iter().flat_map(|group| group.members.iter().copied());
+                Err(self.ambiguous(reference, members.collect()))
+            }
         }
     }
 
@@ -141,7 +145,7 @@ impl Model {
                 None => Err(self.unknown(reference, "no face, edge, vertex or group has that id".into())),
             },
             1 => Ok(found),
-            _ => Err(ReferenceError::Ambiguous { reference: reference.to_owned(), candidates: found }),
+            _ => Err(self.ambiguous(reference, found)),
         }
     }
 

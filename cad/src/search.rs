@@ -1,7 +1,7 @@
 //! The search for the closest point of a group.
 //!
-//! 1. A first foot from the hint's leaf or, without one, the leaf of the nearest sample. With a hint the search may end here: its trace
-//!    tells how far all other leaves were from the hint's query point, and the way from there to here takes away no more than its length.
+//! 1. A first foot from the hint's leaf or, without one, the leaf of the nearest sample. With a hint the search may end here: its
+//!    [leeways](crate::hint) tell which few other leaves can matter.
 //! 2. Every leaf whose hull box is nearer than the best foot so far is visited: closed form, or Newton where the leaf's
 //!    [certificate](crate::certificate) says that one start is enough (given up as soon as convexity tells that the leaf is too
 //!    far away), else the leaf is cut until it does.
@@ -9,11 +9,14 @@
 //!
 //! The foot on a trimmed face is a minimum inside the trim or a point of a boundary edge, and the edges are leaves of the same tree.
 
+use crate::boxes::{Branch, Met};
 use crate::certificate::{Bowl, Certificate};
 use crate::chart::{Jet, Rect};
 use crate::closed_form;
+use crate::curve::Hull;
 use crate::foot::{Doubt, Foot};
 use crate::group::{Group, Member};
+use crate::hint::{Floors, Hint, Leeways};
 use crate::leaf::{EdgeGeometry, EdgeLeaf, FaceGeometry, FaceLeaf};
 use crate::newton::{self, Found, Local};
 use crate::slab::Slab;
@@ -39,26 +42,39 @@ pub(crate) struct Search<'a> {
     pub(crate) outside: Vec<Best>,
     budget: usize,
     pub(crate) doubt: Option<Doubt>,
-    /// Squared distance that no leaf but that of `best` falls short of; 0 where not known.
-    pub(crate) others: f64,
+    /// How far all is at least that was not visited, or was and did not win; for hints.
+    pub(crate) floors: Option<&'a mut Floors>,
+    /// Leeways of what a hint spared.
+    pub(crate) spared: Leeways,
     /// Leaves of faces that must be cut, with their first local minimum: they wait until the bound is as small as the others make it.
     deferred: Vec<(usize, Local)>,
 }
 
 impl Group {
-    /// The closest point of the group to `x`, trims respected. `hint` is the foot of an earlier query to this group nearby: it
-    /// makes the query faster, never wrong. A query point that is not finite gives a foot at infinite distance.
-    pub fn closest(&self, x: DVec3, hint: Option<&Foot>) -> Foot {
-        let mut search = Search::new(self, x);
-        if x.is_finite() {
-            let hint = hint.filter(|foot| foot.trace.group == self.number && foot.distance.is_finite());
-            let seed = hint.map_or_else(|| self.seed(x), |foot| foot.trace.leaf as usize);
-            search.visit(seed, hint.map(|foot| foot.trace.follow(x)));
-            if !hint.is_some_and(|hint| search.stays_with(hint)) {
-                search.visit_all_but(seed);
-            }
+    /// The closest point of the group to `x`, trims respected. A query point that is not finite gives a foot at infinite distance.
+    ///
+    /// Who asks again and again for a point that moves little passes the same `hint` each time: it makes queries faster, never wrong,
+    /// and the first one a little slower.
+    pub fn closest(&self, x: DVec3, hint: Option<&mut Hint>) -> Foot {
+        if let Some(hint) = hint {
+            return self.closest_from(x, hint);
         }
-        search.finish()
+        let mut search = Search::new(self, x);
+        search.visit_all(self.seed(x));
+        search.finish().foot
+    }
+
+    fn closest_from(&self, x: DVec3, hint: &mut Hint) -> Foot {
+        let mut floors = Floors::new();
+        let mut search = Search { floors: Some(&mut floors), ..Search::new(self, x) };
+        if hint.group == self.number {
+            search.visit_from(hint);
+        } else {
+            search.visit_all(self.seed(x));
+        }
+        let landing = search.finish();
+        *hint = search.hint(&landing);
+        landing.foot
     }
 
     /// The foot that Newton's method finds on the whole face or edge from the nearest sample: what a search without proof gives, for
@@ -75,7 +91,7 @@ impl Group {
             }
             _ => search.visit(seed, None),
         }
-        search.finish()
+        search.finish().foot
     }
 }
 
@@ -89,7 +105,8 @@ impl<'a> Search<'a> {
             outside: Vec::new(),
             budget: CUT_BUDGET,
             doubt: None,
-            others: f64::INFINITY,
+            floors: None,
+            spared: Leeways::FREE,
             deferred: Vec::new(),
         }
     }
@@ -103,33 +120,66 @@ impl<'a> Search<'a> {
         self.best.map_or(f64::INFINITY, |best| (best.distance + self.tie()).powi(2))
     }
 
-    /// Whether the foot found on the leaf of `hint` is the closest point: all other leaves are farther away than it.
-    fn stays_with(&mut self, hint: &Foot) -> bool {
-        let Some(best) = self.best.filter(|_| hint.is_proven() && self.doubt.is_none() && self.deferred.is_empty())
-        else {
-            return false;
-        };
-        let others = hint.trace.others - hint.trace.x.distance(self.x);
-        // the hint's own leaf alone has been visited so far
-        let stays = self.others > 0.0 && best.distance + self.tie() < others * (1.0 - 1e-12);
-        if stays {
-            self.others = self.others.min(others * others);
+    /// Visits the leaf whose sample is nearest, then all others that may be nearer.
+    fn visit_all(&mut self, seed: usize) {
+        if self.x.is_finite() {
+            self.visit(seed, None);
+            self.visit_below(0, seed);
+            self.cut_deferred();
         }
-        stays
     }
 
-    fn visit_all_but(&mut self, seed: usize) {
-        let group = self.group;
-        let skipped = group.boxes.visit(self.x, self.bound(), |leaf, bound| {
-            if leaf != seed {
-                self.visit(leaf, None);
-                self.bound()
-            } else {
-                bound
-            }
-        });
-        self.others = self.others.min(skipped);
+    /// Visits the leaf of an earlier foot, and what may be nearer.
+    fn visit_from(&mut self, hint: &Hint) {
+        if !self.x.is_finite() {
+            return;
+        }
+        let leaf = hint.leaf as usize;
+        self.visit(leaf, Some(hint.follow(self.x)));
+        if hint.moved(self.x) < hint.leeways.rest {
+            self.visit_rivals(hint);
+        } else {
+            self.visit_below(0, leaf);
+        }
         self.cut_deferred();
+    }
+
+    fn visit_rivals(&mut self, hint: &Hint) {
+        let moved = hint.moved(self.x);
+        self.spared.rest = self.spared.rest.min(hint.leeways.rest - moved);
+        for rival in hint.leeways.rivals() {
+            let left = f64::from(rival.leeway) - moved;
+            match rival.branch.split() {
+                _ if left > 0.0 => self.spared.push(rival.branch, left),
+                Ok(leaf) => self.visit(leaf, None),
+                Err(node) => self.visit_below(node, hint.leaf as usize),
+            }
+        }
+    }
+
+    /// Visits all leaves below a node of the tree that may be near enough, but the one that has been visited.
+    fn visit_below(&mut self, node: usize, seed: usize) {
+        let group = self.group;
+        group.boxes.walk(node, self.x, self.bound(), |met| {
+            match met {
+                Met::Leaf(leaf) if leaf != seed => self.visit(leaf, None),
+                Met::Leaf(_) => {}
+                Met::Skipped(branch, distance_squared) => self.keeps_off(branch, distance_squared),
+            }
+            self.bound()
+        });
+    }
+
+    /// No point of a part is nearer than this squared distance.
+    #[inline]
+    fn keeps_off(&mut self, branch: Branch, distance_squared: f64) {
+        if let Some(floors) = &mut self.floors {
+            floors.push(branch, distance_squared);
+        }
+    }
+
+    fn stays_off(&mut self, member: usize, distance_squared: f64) {
+        self.keeps_off(Branch::leaf(member), distance_squared);
     }
 
     /// A local minimum at which the foot may lie.
@@ -143,13 +193,17 @@ impl<'a> Search<'a> {
             self.rim = Some(found);
         }
         if !distance.is_finite() {
-            self.others = 0.0;
+            self.spared = Leeways::NONE;
         } else if self.best.is_none_or(better) {
-            let beaten = self.best.filter(|best| best.member != member);
-            self.others = self.others.min(beaten.map_or(f64::INFINITY, |best| best.distance * best.distance));
+            if let Some(beaten) = self.best {
+                self.stays_off(beaten.member, beaten.distance * beaten.distance);
+            }
             self.best = Some(found);
+            if let Some(floors) = &mut self.floors {
+                floors.closest_within(distance, self.group.leaf_size);
+            }
         } else {
-            self.others = self.others.min(local.distance_squared);
+            self.stays_off(member, local.distance_squared);
         }
     }
 
@@ -177,7 +231,7 @@ impl<'a> Search<'a> {
         if near && (!leaf.crossed || face.trim.contains(local.parameters)) {
             return self.offer(index, local);
         }
-        self.others = self.others.min(local.distance_squared);
+        self.stays_off(index, local.distance_squared);
         if near {
             let distance = local.distance_squared.sqrt();
             self.outside.push(Best { member: index, parameters: local.parameters, distance });
@@ -185,17 +239,17 @@ impl<'a> Search<'a> {
     }
 
     /// Whether an oriented box is too far away to matter.
-    fn is_far(&mut self, slab: &Slab) -> bool {
+    fn is_far(&mut self, index: usize, slab: &Slab) -> bool {
         let distance_squared = slab.distance_squared(self.x);
         let far = distance_squared > self.bound();
         if far {
-            self.others = self.others.min(distance_squared);
+            self.stays_off(index, distance_squared);
         }
         far
     }
 
     fn visit_face(&mut self, index: usize, face: &FaceGeometry, leaf: &FaceLeaf, start: Option<[f64; 2]>) {
-        if self.is_far(&leaf.slab) {
+        if self.is_far(index, &leaf.slab) {
             return;
         }
         if let Some(local) = closed_form::nearest(&face.chart, &leaf.rect, self.x) {
@@ -233,7 +287,7 @@ impl<'a> Search<'a> {
         let floor = |p: [f64; 2], jet: &Jet| bowl.map_or(0.0, |bowl| bowl.floor(rect, p, jet, x));
         match newton::from_jet(&face.chart, rect, x, p, jet, self.bound(), floor) {
             Found::Minimum(local) => self.offer_on_face(index, face, leaf, local),
-            Found::TooFar(floor) => self.others = self.others.min(floor),
+            Found::TooFar(floor) => self.stays_off(index, floor),
         }
     }
 
@@ -243,32 +297,29 @@ impl<'a> Search<'a> {
             let Member::Face { face, leaf } = group.members[index] else { continue };
             let face = &group.geometry.faces[face as usize];
             let leaf = &face.leaves[leaf as usize];
-            if self.is_far(&leaf.slab) {
+            if self.is_far(index, &leaf.slab) {
                 continue;
             }
-            if self.is_beyond(face, leaf.rect, local) {
-                self.others = self.others.min(self.beyond());
-            } else {
+            let center = leaf.certificate.as_ref().map(|certificate| *certificate.jet());
+            if center.is_some_and(|center| Bowl::over(&face.chart, &leaf.rect, self.x, &center).is_some()) {
+                continue;
+            }
+            let p = face.chart.d2(local.parameters[0], local.parameters[1])[0];
+            if !self.is_beyond(index, &face.chart.hull(leaf.rect), p, local) {
                 self.cut_face(index, face, leaf, local);
             }
         }
     }
 
-    /// Whether no point of `rect` is nearer than the foot so far, or than its own `local` minimum: its hull is beyond a plane there.
-    fn is_beyond(&self, face: &FaceGeometry, rect: Rect, local: Local) -> bool {
-        let p = face.chart.d2(local.parameters[0], local.parameters[1])[0];
-        self.best.is_some() && face.chart.hull(rect).is_beyond(self.x, p, self.gain(local))
-    }
-
-    /// Squared distance that parts found by [`Search::is_beyond`] do not fall short of.
-    fn beyond(&self) -> f64 {
-        self.best.map_or(0.0, |best| (best.distance - self.tie()).max(0.0).powi(2))
-    }
-
-    /// How much nearer than `local` a point must be to matter.
-    fn gain(&self, local: Local) -> f64 {
-        let best = self.best.map_or(f64::INFINITY, |best| best.distance);
-        (local.distance_squared.sqrt() - best).max(0.0) + self.tie()
+    /// Whether no point of a hull is nearer than the foot so far, or than its own `local` minimum at `p`: it is beyond a plane there.
+    fn is_beyond(&mut self, index: usize, hull: &Hull, p: DVec3, local: Local) -> bool {
+        let Some(best) = self.best else { return false };
+        let floor = hull.distance_towards(self.x, p);
+        let beyond = floor >= best.distance.min(local.distance_squared.sqrt()) - self.tie();
+        if beyond {
+            self.stays_off(index, floor.max(0.0).powi(2));
+        }
+        beyond
     }
 
     /// Cuts a leaf until each part is too far away, or has one minimum only, or is a point.
@@ -280,11 +331,11 @@ impl<'a> Search<'a> {
             let bounds = hull.bounds();
             let distance_squared = bounds.distance_squared(self.x);
             if distance_squared > self.bound() {
-                self.others = self.others.min(distance_squared);
+                self.stays_off(index, distance_squared);
                 continue;
             }
             let center = face.chart.d2_within(&rect, rect.center());
-            if self.is_far(&Slab::new(&hull, center[1], center[2])) {
+            if self.is_far(index, &Slab::new(&hull, center[1], center[2])) {
                 continue;
             }
             if let Some(bowl) = Bowl::over(&face.chart, &rect, self.x, &center) {
@@ -294,8 +345,11 @@ impl<'a> Search<'a> {
             let local = newton::on_surface(&face.chart, &rect, self.x, rect.center());
             self.offer_on_face(index, face, leaf, local);
             let p = face.chart.d2_within(&rect, local.parameters)[0];
-            if hull.is_beyond(self.x, p, self.gain(local)) || bounds.diagonal() < POINT * self.group.diagonal {
-                self.others = self.others.min(self.beyond());
+            if self.is_beyond(index, &hull, p, local) {
+                continue;
+            }
+            if bounds.diagonal() < POINT * self.group.diagonal {
+                self.stays_off(index, distance_squared);
                 continue;
             }
             if self.budget == 0 {
@@ -326,7 +380,7 @@ impl<'a> Search<'a> {
     }
 
     fn visit_edge(&mut self, index: usize, edge: &EdgeGeometry, leaf: &EdgeLeaf, start: Option<f64>) {
-        if self.is_far(&leaf.slab) {
+        if self.is_far(index, &leaf.slab) {
             return;
         }
         if let Some(local) = closed_form::nearest_on_curve(&edge.curve, leaf.range, self.x) {
@@ -339,7 +393,7 @@ impl<'a> Search<'a> {
         }
         let mut parts: Vec<EdgeLeaf> = vec![leaf.clone()];
         while let Some(part) = parts.pop() {
-            if self.is_far(&part.slab) {
+            if self.is_far(index, &part.slab) {
                 continue;
             }
             let [a, b] = part.range;

@@ -10,6 +10,9 @@ pub const ORTHOGONAL: f64 = 1e-10;
 /// A leaf smaller than this is not cut further: all its points are the same point. Fraction of the diagonal.
 pub const POINT: f64 = 1e-10;
 
+/// Coordinates as large as this are infinite: OCCT's own bound is `2e100`, and squares must not overflow. In the unit of the file.
+pub const INFINITE: f64 = 1e100;
+
 /// Newton's last relative step (fraction of the leaf's parameter range).
 pub const NEWTON_STEP: f64 = 1e-14;
 
@@ -45,6 +48,10 @@ pub const TINY: f64 = 1e-6;
 
 /// A pcurve that lies farther from its edge than this many tolerances of the edge is called inconsistent.
 pub const TRIM_GAP: f64 = 2.0;
+
+/// ... and one that is farther off than this is called so whatever its tolerance: OCCT widens tolerances until they fit. Fraction of the
+/// diagonal.
+pub const LOOSE: f64 = 1e-3;
 
 /// Sampled derivative bounds of a leaf are widened by this factor.
 pub const BOUND_SAFETY: f64 = 1.5;

@@ -3,7 +3,7 @@
 
 mod common;
 
-use cad::{End, EntityId, Evaluation, FaceId, Foot, Group, Kind, Model};
+use cad::{End, EntityId, Evaluation, FaceId, Foot, Group, Hint, Kind, Model};
 use common::{Random, fixture};
 use glam::DVec3;
 
@@ -174,6 +174,28 @@ fn step_and_iges_give_the_same_feet() {
     }
 }
 
+/// Walks of steps from tiny to large, which leave a leaf, spend leeways and search anew: the hint is carried along all the way.
+#[test]
+fn a_hint_is_never_wrong_along_a_walk() {
+    let model = fixture("wing_sharp/wing_sharp.step");
+    let group = all_faces(&model);
+    let mut random = Random(29);
+    let mut differ = 0;
+    for walk in 0..400 {
+        let mut x = random.in_box(model.bounds().min, model.bounds().max);
+        let mut hint = Hint::default();
+        let step = model.diagonal() * 10.0_f64.powf(-1.0 - 4.0 * random.unit());
+        for k in 0..25 {
+            let (plain, hinted) = (group.closest(x, None), group.closest(x, Some(&mut hint)));
+            let off = (plain.distance - hinted.distance).abs();
+            assert!(off < 1e-12 * model.diagonal(), "walk {walk}, step {k}, {x}: {plain:?} {hinted:?}");
+            differ += usize::from(plain.is_proven() != hinted.is_proven());
+            x += step * random.in_box(-DVec3::ONE, DVec3::ONE);
+        }
+    }
+    assert_eq!(differ, 0, "proven without a hint but not with one, or the reverse");
+}
+
 #[test]
 fn threads_and_hints_change_nothing() {
     let model = fixture("wing_sharp/wing_sharp.step");
@@ -183,10 +205,12 @@ fn threads_and_hints_change_nothing() {
     let serial: Vec<Foot> = xs.iter().map(|&x| group.closest(x, None)).collect();
     for threads in [1, 2, 7] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        assert_eq!(pool.install(|| group.closest_batch(&xs, &[])), serial, "{threads} threads");
+        assert_eq!(pool.install(|| group.closest_batch(&xs, &mut [])), serial, "{threads} threads");
     }
+    let mut hint = Hint::default();
     for (i, foot) in serial.iter().enumerate() {
-        let hinted = group.closest(xs[i], Some(&serial[(i * 7 + 1) % xs.len()]));
+        group.closest(xs[(i * 7 + 1) % xs.len()], Some(&mut hint));
+        let hinted = group.closest(xs[i], Some(&mut hint));
         assert!((hinted.distance - foot.distance).abs() < 1e-12 * model.diagonal(), "a hint made an answer wrong");
     }
 }

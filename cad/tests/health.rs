@@ -50,6 +50,33 @@ fn moved_boundaries_are_told() {
     assert!(health.trims[0].1.to_string().contains("away from the surface"), "{:?}", health.trims);
 }
 
+/// A cylinder of half an annulus with another radius: below zero OCCT drops the face, at zero it keeps it far from its edges.
+#[test]
+fn dropped_and_shrunken_faces_are_told() {
+    let text = std::fs::read_to_string(common::path("cylinder_bl/cylinder_bl.step")).unwrap();
+    let dir = tempfile::tempdir().unwrap();
+    let at = text.find("CYLINDRICAL_SURFACE(").unwrap();
+    let surface: String = text[..at].rsplit('#').next().unwrap().chars().take_while(char::is_ascii_digit).collect();
+    let face =
+        text.lines().find(|line| line.contains("ADVANCED_FACE") && line.contains(&format!("#{surface},"))).unwrap();
+    let id = format!("step:{}", face.split(' ').next().unwrap());
+    let end = at + text[at..].find(");").unwrap();
+    let radius = at + text[at..end].rfind(',').unwrap() + 1;
+    let read = |value: &str| {
+        let path = dir.path().join(format!("{value}.step"));
+        std::fs::write(&path, format!("{}{value}{}", &text[..radius], &text[end..])).unwrap();
+        Model::read(&path, &options()).unwrap()
+    };
+    let negative = read("-0.5");
+    let health = negative.health();
+    assert_eq!(health.dropped, [id.as_str()]);
+    assert!(!health.open_edges.is_empty() && negative.losses().is_some_and(|told| told.contains(&id)), "{health:?}");
+    let zero = read("0.");
+    let health = zero.health();
+    let shrunken = zero.resolve(&id).unwrap();
+    assert!(health.trims.iter().any(|(face, _)| shrunken == [(*face).into()]), "{health:?}");
+}
+
 /// An entity that OCCT dies of is named in the error.
 #[test]
 fn a_crash_names_the_suspects() {

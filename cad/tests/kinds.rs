@@ -3,7 +3,7 @@
 
 mod common;
 
-use cad::{EdgeId, End, EntityId, FaceId, Group, Kind, Model, ReferenceError};
+use cad::{EdgeId, End, EntityId, Evaluation, FaceId, Group, Hint, Kind, Model, ReferenceError};
 use common::{Random, options, shape};
 use glam::DVec3;
 use opencascade_sys as sys;
@@ -171,6 +171,44 @@ fn sampled_edge(model: &Model, id: EdgeId, x: DVec3) -> f64 {
     distances.fold(f64::INFINITY, f64::min)
 }
 
+/// Weingarten's equations: the normal moves by `−κ` times the move along a principal direction, so the trace and determinant of the map from
+/// moves to its differences are `−(κ₁ + κ₂)` and `κ₁ κ₂`.
+#[test]
+fn principal_curvatures_are_those_of_the_moving_normal() {
+    let model = shape("kinds.brep");
+    let mut random = Random(53);
+    let mut seen = 0;
+    for face in model.faces() {
+        let [u, v] = face.parameters;
+        let inside = |[a, b]: [f64; 2], t: f64| a + (b - a) * (0.1 + 0.8 * t);
+        for _ in 0..20 {
+            let p = [inside(u, random.unit()), inside(v, random.unit())];
+            let at = |du: f64, dv: f64| match model.evaluate(face.id.into(), [p[0] + du, p[1] + dv]) {
+                Some(Evaluation::Surface(point)) => point,
+                other => panic!("{}: {other:?}", face.id),
+            };
+            let normal = |du: f64, dv: f64| at(du, dv).normal.unwrap();
+            let here = at(0.0, 0.0);
+            let [k1, k2] = here.curvatures.unwrap();
+            let [hu, hv] = [1e-5 * (u[1] - u[0]), 1e-5 * (v[1] - v[0])];
+            let a = here.parameters_of((normal(hu, 0.0) - normal(-hu, 0.0)) / (2.0 * hu));
+            let b = here.parameters_of((normal(0.0, hv) - normal(0.0, -hv)) / (2.0 * hv));
+            let (trace, determinant) = (a.x + b.y, a.x * b.y - a.y * b.x);
+            let size = k1.abs().max(k2.abs()).max(1e-3 / model.diagonal());
+            // second derivatives jump at knots, which a difference may straddle
+            let smooth = at(hu, 0.0).second[0].distance(at(-hu, 0.0).second[0]) < 0.1 * here.second[0].length() + 1e-3
+                && at(0.0, hv).second[2].distance(at(0.0, -hv).second[2]) < 0.1 * here.second[2].length() + 1e-3;
+            if smooth {
+                assert!((trace + k1 + k2).abs() < 1e-3 * size, "{} at {p:?}: {trace} {k1} {k2}", face.id);
+                assert!((determinant - k1 * k2).abs() < 1e-3 * size * size, "{} at {p:?}: {k1} {k2}", face.id);
+                seen += 1;
+            }
+            assert!(k1 >= k2);
+        }
+    }
+    assert!(seen > 15 * model.faces().len(), "{seen} of {} faces", model.faces().len());
+}
+
 /// Where a foot is proven, a hint of any other query must not change the distance.
 #[test]
 fn hints_are_never_wrong_on_any_kind() {
@@ -179,19 +217,18 @@ fn hints_are_never_wrong_on_any_kind() {
     let group = Group::of_faces(&model, &all).unwrap();
     let mut random = Random(47);
     let xs: Vec<DVec3> = (0..500).map(|_| random.in_box(model.bounds().min, model.bounds().max)).collect();
-    let mut hint = group.closest(xs[0], None);
+    let mut hint = Hint::default();
     for (i, &x) in xs.iter().enumerate() {
         let plain = group.closest(x, None);
-        let hinted = group.closest(x, Some(&hint));
+        let hinted = group.closest(x, Some(&mut hint));
         assert!((plain.distance - hinted.distance).abs() < 1e-11 * model.diagonal(), "{i} {x}: {plain:?} {hinted:?}");
         // a walk of small moves: the chain of hints carries its clearance on
         let mut at = x;
-        hint = hinted;
         for _ in 0..4 {
             at += 1e-3 * model.diagonal() * (random.in_box(DVec3::ZERO, DVec3::ONE) - DVec3::splat(0.5));
-            hint = group.closest(at, Some(&hint));
+            let hinted = group.closest(at, Some(&mut hint));
             let plain = group.closest(at, None).distance;
-            assert!((plain - hint.distance).abs() < 1e-11 * model.diagonal(), "{i} {at}: {plain} {hint:?}");
+            assert!((plain - hinted.distance).abs() < 1e-11 * model.diagonal(), "{i} {at}: {plain} {hinted:?}");
         }
     }
 }

@@ -5,7 +5,7 @@
 
 mod common;
 
-use cad::{End, Evaluation, Foot, Group, Model};
+use cad::{End, Evaluation, Foot, Group, Hint, Model};
 use common::{Random, fixture, shape};
 use glam::DVec3;
 
@@ -32,9 +32,10 @@ fn race(model: &Model, count: usize) {
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let feet = group.closest_batch(&xs, &[]);
-            let hints: Vec<Option<Foot>> = feet.iter().copied().map(Some).collect();
-            let hinted = group.closest_batch(&moved, &hints);
+            let feet = group.closest_batch(&xs, &mut []);
+            let mut hints = vec![Hint::default(); xs.len()];
+            group.closest_batch(&xs, &mut hints);
+            let hinted = group.closest_batch(&moved, &mut hints);
             let at: Vec<_> = feet.iter().map(|foot| (foot.entity, foot.parameters)).collect();
             let points = group.evaluate_batch(&at);
             let mut bytes = [bytes_of(&feet), bytes_of(&hinted)].concat();

@@ -140,7 +140,7 @@ impl Binder<'_> {
     ) -> Result<f64, AssociateError> {
         let nodes: Vec<NodeId> = nodes.iter().copied().collect();
         let places: Vec<DVec3> = nodes.iter().map(|n| self.mesh.points[n.index()]).collect();
-        let feet = group.closest_batch(&places, &[]);
+        let feet = group.closest_batch(&places, &mut []);
         let off = feet.iter().filter(|f| f.distance > self.limit).count();
         let worst = (0..feet.len()).max_by(|&a, &b| feet[a].distance.total_cmp(&feet[b].distance));
         let Some(worst) = worst else { return Ok(0.0) };
@@ -241,7 +241,7 @@ impl Binder<'_> {
             let nodes: BTreeSet<NodeId> = string.items.iter().flatten().copied().collect();
             if let Ok(group) = Group::of_edges(self.model, &ids) {
                 let places: Vec<DVec3> = nodes.iter().map(|n| self.mesh.points[n.index()]).collect();
-                let farthest = group.closest_batch(&places, &[]).iter().map(|f| f.distance).fold(0.0, f64::max);
+                let farthest = group.closest_batch(&places, &mut []).iter().map(|f| f.distance).fold(0.0, f64::max);
                 if farthest <= self.slack {
                     return Ok(Some(self.curve(ids, &string.label, group)));
                 }

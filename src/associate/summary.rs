@@ -140,7 +140,7 @@ fn farthest_by_patch(
     }
     for (entity, nodes) in nodes {
         let places: Vec<DVec3> = nodes.iter().map(|n| mesh.points[n.index()]).collect();
-        let feet = group.closest_batch(&places, &[]);
+        let feet = group.closest_batch(&places, &mut []);
         farthest.insert(entity, feet.iter().map(|foot| foot.distance).fold(0.0, f64::max));
     }
     farthest

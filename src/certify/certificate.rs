@@ -12,6 +12,9 @@ use crate::mesh::Mesh;
 /// Elements judged in one go by one thread.
 const CHUNK: usize = 1024;
 
+/// Chunks that are judged before what they found is merged: what waits for it does not grow with the mesh.
+const BATCH: usize = 64;
+
 /// What is proven of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certificate {
@@ -83,15 +86,18 @@ pub fn mesh(mesh: &Mesh, unperturbed: Option<&[DVec3]>, settings: &Settings) -> 
 #[must_use]
 pub fn certify(elements: &impl Elements, settings: &Settings) -> Certificate {
     let chunks = elements.count().div_ceil(CHUNK);
-    let summaries: Vec<Summary> = (0..chunks)
-        .into_par_iter()
-        .map_init(Bench::default, |bench, chunk| {
-            let last = elements.count().min((chunk + 1) * CHUNK);
-            bench.summary(elements, chunk * CHUNK..last, settings)
-        })
-        .collect();
     let mut all = Summary::default();
-    summaries.into_iter().for_each(|summary| all.merge(summary));
+    for first in (0..chunks).step_by(BATCH) {
+        let summaries: Vec<Summary> = (first..chunks.min(first + BATCH))
+            .into_par_iter()
+            .map_init(Bench::default, |bench, chunk| {
+                let last = elements.count().min((chunk + 1) * CHUNK);
+                bench.summary(elements, chunk * CHUNK..last, settings)
+            })
+            .collect();
+        summaries.into_iter().for_each(|summary| all.merge(summary));
+        all.trim();
+    }
     all.certificate(elements, settings)
 }
 
@@ -121,8 +127,7 @@ impl Bench {
             });
             summary.add(judged);
         }
-        summary.relative.trim();
-        summary.scaled.trim();
+        summary.trim();
         summary
     }
 }
@@ -168,6 +173,12 @@ impl Summary {
         }
         self.relative.add(judged);
         self.scaled.add(judged);
+    }
+
+    /// Lets go of what cannot be among the worst.
+    fn trim(&mut self) {
+        self.relative.trim();
+        self.scaled.trim();
     }
 
     fn merge(&mut self, other: Summary) {

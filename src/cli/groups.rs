@@ -127,8 +127,8 @@ impl Entity {
 impl Listing {
     fn text(&self) -> Result<String, std::fmt::Error> {
         let mut text = String::new();
-        let metres = self.metres_per_unit.map_or_else(|| "unknown".to_owned(), |m| format!("{m} m"));
-        writeln!(text, "{}: {}, unit {} ({metres})", self.path, self.format, self.unit)?;
+        let metres = self.metres_per_unit.map_or_else(String::new, |m| format!(" ({m} m)"));
+        writeln!(text, "{}: {}, unit {}{metres}", self.path, self.format, self.unit)?;
         for (title, entities) in [("faces", &self.faces), ("edges", &self.edges), ("vertices", &self.vertices)] {
             writeln!(text, "{} {title}", entities.len())?;
             for e in entities {

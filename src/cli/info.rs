@@ -113,16 +113,18 @@ fn linkage(path: &Path) -> Result<String, Failure> {
 fn model(model: &Model) -> Result<String, Failure> {
     let (faces, edges) = (model.faces(), model.edges());
     let unit = model.unit();
-    let metres = unit.metres.map_or_else(|| "unknown".to_owned(), |m| format!("{m} m"));
-    let mut text = format!("{}, unit {} ({metres})\n", model.format(), unit.name);
+    let metres = unit.metres.map_or_else(String::new, |m| format!(" ({m} m)"));
+    let mut text = format!("{}, unit {}{metres}\n", model.format(), unit.name);
     writeln!(text, "  {}", bounds(model.bounds()))?;
     let health = model.health();
-    writeln!(text, "  {} faces: {}", faces.len(), by_kind(&health.faces))?;
-    writeln!(text, "  {} edges: {}", edges.len(), by_kind(&health.edges))?;
+    writeln!(text, "  {} faces{}", faces.len(), by_kind(&health.faces))?;
+    writeln!(text, "  {} edges{}", edges.len(), by_kind(&health.edges))?;
     writeln!(text, "  {} vertices", health.vertices)?;
     for face in faces {
         let label = &face.label;
-        writeln!(text, "  {} {} {} {:?}", face.id, face.kind, label.reference, label.name)?;
+        let name = if label.name.is_empty() { String::new() } else { format!("{:?}", label.name) };
+        let line = format!("  {} {} {} {name}", face.id, face.kind, label.reference);
+        writeln!(text, "{}", line.trim_end())?;
     }
     for group in model.groups() {
         let members: Vec<String> = group.members.iter().map(ToString::to_string).collect();
@@ -135,7 +137,7 @@ fn model(model: &Model) -> Result<String, Failure> {
 
 fn by_kind(counts: &BTreeMap<EntityKind, usize>) -> String {
     let counts: Vec<String> = counts.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
-    counts.join(", ")
+    if counts.is_empty() { String::new() } else { format!(": {}", counts.join(", ")) }
 }
 
 /// What may spoil a projection.

@@ -131,7 +131,7 @@ fn closest(group: &Group, xs: &[DVec3], teller: &Teller) -> Vec<Foot> {
     let (start, mut last) = (Instant::now(), Instant::now());
     teller.say(format!("projecting {} points", xs.len()));
     for chunk in xs.chunks(CHUNK) {
-        feet.extend(group.closest_batch(chunk, &[]));
+        feet.extend(group.closest_batch(chunk, &mut []));
         if last.elapsed() >= INTERVAL {
             last = Instant::now();
             let left = start.elapsed().as_secs_f64() / feet.len() as f64 * (xs.len() - feet.len()) as f64;

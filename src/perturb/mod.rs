@@ -42,6 +42,8 @@
 mod field;
 mod roots;
 
+use std::ops::Range;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -52,6 +54,9 @@ use crate::periodic::Ties;
 use crate::project::Projected;
 use field::Field;
 pub use field::WallFace;
+
+/// Carriers whose nodes are carried at a time: what they take while they wait does not grow with the mesh.
+const BATCH: usize = 1 << 16;
 
 /// Places of all nodes: boundary nodes where projection put them, planes and volume carried along.
 #[must_use]
@@ -65,21 +70,23 @@ pub fn perturb(
     let planar = |host: Host| association.plane_of(host).is_some();
     let curved = |host: Host| matches!(host, Host::Surface(_)) && !planar(host);
     let linear = elevated.linear_nodes;
-    let hosts = &projected.hosts;
+    let host = |n: usize| projected.host(n);
     let mut wall = wall_faces(elevated, boundary, |f| curved(association.faces[f]));
     let mut displacement = projected.displacement.clone();
+    let nodes = elevated.mesh.points.len();
     if wall.is_empty() {
-        return sum(elevated, association, hosts, &displacement);
+        displacement.resize(nodes, DVec3::ZERO);
+        return sum(elevated, association, projected, displacement);
     }
 
     let mut seeds = vec![false; linear];
     wall.iter().flat_map(WallFace::corners).for_each(|n| seeds[n.index()] = true);
-    let in_plane = |n: usize| n >= linear && planar(hosts[n]);
+    let in_plane = |n: usize| n >= linear && planar(host(n));
     let field = Field::new(elevated, &wall, &displacement, &seeds, &[], &projected.beyond);
     let reach = field.reach_of_roots();
-    let mut carried = carry(&field, elevated, &displacement, in_plane);
+    let mut carried = carry(&field, elevated, displacement.clone(), in_plane);
     for (n, d) in carried.iter_mut().enumerate().skip(linear) {
-        if let Some(plane) = association.plane_of(hosts[n]) {
+        if let Some(plane) = association.plane_of(host(n)) {
             *d = plane.closest(elevated.mesh.points[n] + *d) - elevated.mesh.points[n];
         }
     }
@@ -89,26 +96,32 @@ pub fn perturb(
     let planes = wall_faces(elevated, boundary, |f| planar(association.faces[f]));
     let mut on_plane = vec![false; linear];
     planes.iter().flat_map(WallFace::corners).for_each(|n| on_plane[n.index()] = true);
-    let own_wall = roots::walls_of_their_own(elevated, |n| planar(hosts[n]), &on_plane);
+    let own_wall = roots::walls_of_their_own(elevated, |n| planar(host(n)), &on_plane);
     for (seed, own) in seeds.iter_mut().zip(own_wall) {
         *seed |= own;
     }
     wall.extend(planes);
     let field = Field::new(elevated, &wall, &displacement, &seeds, &reach, &projected.beyond);
-    let displacement = carry(&field, elevated, &displacement, |n| hosts[n] == Host::Free);
-    sum(elevated, association, hosts, &displacement)
+    let mut whole = displacement.clone();
+    whole.resize(nodes, DVec3::ZERO);
+    let whole = carry(&field, elevated, whole, |n| host(n) == Host::Free);
+    sum(elevated, association, projected, whole)
 }
 
 /// Straight places plus displacements, planes kept exactly.
-fn sum(elevated: &Elevated, association: &Association, hosts: &[Host], displacement: &[DVec3]) -> Vec<DVec3> {
-    let place = |n: usize| {
-        let wish = elevated.mesh.points[n] + displacement[n];
-        if n < elevated.linear_nodes {
-            return wish;
+fn sum(
+    elevated: &Elevated,
+    association: &Association,
+    projected: &Projected,
+    mut displacement: Vec<DVec3>,
+) -> Vec<DVec3> {
+    for (n, (place, straight)) in displacement.iter_mut().zip(&elevated.mesh.points).enumerate() {
+        *place += *straight;
+        if n >= elevated.linear_nodes {
+            *place = association.plane_of(projected.host(n)).map_or(*place, |plane| plane.closest(*place));
         }
-        association.plane_of(hosts[n]).map_or(wish, |plane| plane.closest(wish))
-    };
-    (0..elevated.mesh.points.len()).map(place).collect()
+    }
+    displacement
 }
 
 fn wall_faces(elevated: &Elevated, boundary: &Boundary, of: impl Fn(usize) -> bool) -> Vec<WallFace> {
@@ -124,27 +137,37 @@ fn wall_faces(elevated: &Elevated, boundary: &Boundary, of: impl Fn(usize) -> bo
 }
 
 /// Displacements of all nodes: those that `follows` from the field, the others as given.
-fn carry(field: &Field, elevated: &Elevated, given: &[DVec3], follows: impl Fn(usize) -> bool + Sync) -> Vec<DVec3> {
-    let mut result = given.to_vec();
+fn carry(field: &Field, elevated: &Elevated, given: Vec<DVec3>, follows: impl Fn(usize) -> bool + Sync) -> Vec<DVec3> {
+    let mut result = given;
     let vertices: Vec<DVec3> = (0..elevated.linear_nodes)
         .into_par_iter()
-        .map(|n| if follows(n) { field.at(&[n], &[1.0]) } else { given[n] })
+        .map(|n| if follows(n) { field.at(&[n], &[1.0]) } else { result[n] })
         .collect();
     result[..elevated.linear_nodes].copy_from_slice(&vertices);
     for carriers in &elevated.carriers {
-        carry_inside(field, carriers, &follows, &mut result);
+        for first in (0..carriers.len()).step_by(BATCH) {
+            let batch = first..carriers.len().min(first + BATCH);
+            carry_inside(field, carriers, batch, &follows, &mut result);
+        }
     }
     result
 }
 
-/// Displacements of the nodes inside edges, faces or cells of one kind.
-fn carry_inside(field: &Field, carriers: &Carriers, follows: &(impl Fn(usize) -> bool + Sync), result: &mut [DVec3]) {
-    let all: Vec<(&[NodeId], NodeId)> = carriers.iter().collect();
+/// Displacements of the nodes inside some edges, faces or cells of one kind.
+fn carry_inside(
+    field: &Field,
+    carriers: &Carriers,
+    batch: Range<usize>,
+    follows: &(impl Fn(usize) -> bool + Sync),
+    result: &mut [DVec3],
+) {
     let inside = |first: NodeId| first.index()..first.index() + carriers.weights().len();
-    let own: Vec<Vec<DVec3>> = all
-        .par_iter()
+    let own: Vec<Vec<DVec3>> = batch
+        .clone()
+        .into_par_iter()
         .with_min_len(256)
-        .map(|&(corners, first)| {
+        .map(|carrier| {
+            let (corners, first) = carriers.get(carrier);
             if !inside(first).any(follows) {
                 return Vec::new();
             }
@@ -152,8 +175,8 @@ fn carry_inside(field: &Field, carriers: &Carriers, follows: &(impl Fn(usize) ->
             carriers.weights().iter().map(|weights| field.at(&corners, weights)).collect()
         })
         .collect();
-    for ((_, first), own) in all.into_iter().zip(own) {
-        for (node, d) in inside(first).zip(own) {
+    for (carrier, own) in batch.zip(own) {
+        for (node, d) in inside(carriers.get(carrier).1).zip(own) {
             if follows(node) {
                 result[node] = d;
             }

@@ -3,16 +3,14 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use rayon::prelude::*;
-
+use crate::element::Cell;
 use crate::elevate::Elevated;
-use crate::mesh::Mesh;
 
 /// For every linear node the seed at the end of the shortest path along mesh edges (Dijkstra from all seeds at once; ties
 /// go to the smaller seed); `None` where no path leads to one.
 pub(super) fn roots(elevated: &Elevated, seeds: &[bool]) -> Vec<Option<u32>> {
     let (mesh, linear_nodes) = (&elevated.mesh, elevated.linear_nodes);
-    let (starts, neighbours) = neighbours(mesh, linear_nodes);
+    let (starts, neighbours) = neighbours(elevated);
     let mut roots: Vec<Option<u32>> = vec![None; linear_nodes];
     let mut length = vec![f64::INFINITY; linear_nodes];
     let mut queue = BinaryHeap::new();
@@ -47,7 +45,7 @@ pub(super) fn walls_of_their_own(
     on_plane: &[bool],
 ) -> Vec<bool> {
     let points = &elevated.mesh.points;
-    let (starts, neighbours) = neighbours(&elevated.mesh, elevated.linear_nodes);
+    let (starts, neighbours) = neighbours(elevated);
     let own_wall = |n: usize| {
         let around = &neighbours[starts[n] as usize..starts[n + 1] as usize];
         let length = |&&m: &&u32| points[n].distance(points[m as usize]);
@@ -75,26 +73,25 @@ impl Ord for Length {
     }
 }
 
-/// Nodes at the other ends of the mesh edges at each linear node.
-fn neighbours(mesh: &Mesh, linear_nodes: usize) -> (Vec<u32>, Vec<u32>) {
-    let mut pairs: Vec<(u32, u32)> = Vec::new();
-    for (_, block) in mesh.blocks_of(3) {
-        for nodes in block.elements(mesh.order) {
-            for &[a, b] in block.cell.edges() {
-                let ends = [nodes[usize::from(a)], nodes[usize::from(b)]].map(|n| n.index() as u32);
-                pairs.push((ends[0], ends[1]));
-                pairs.push((ends[1], ends[0]));
-            }
-        }
-    }
-    pairs.par_sort_unstable();
-    pairs.dedup();
+/// Nodes at the other ends of the mesh edges at each linear node, rising.
+fn neighbours(elevated: &Elevated) -> (Vec<u32>, Vec<u32>) {
+    let linear_nodes = elevated.linear_nodes;
+    let edges = || elevated.carriers[Cell::Line as usize].iter().map(|(ends, _)| [ends[0].index(), ends[1].index()]);
     let mut starts = vec![0u32; linear_nodes + 1];
-    for &(a, _) in &pairs {
-        starts[a as usize + 1] += 1;
-    }
+    edges().flatten().for_each(|n| starts[n + 1] += 1);
     for n in 0..linear_nodes {
         starts[n + 1] += starts[n];
     }
-    (starts, pairs.into_iter().map(|(_, b)| b).collect())
+    let mut next = starts.clone();
+    let mut neighbours = vec![0; starts[linear_nodes] as usize];
+    for [a, b] in edges() {
+        for (from, to) in [(a, b), (b, a)] {
+            neighbours[next[from] as usize] = to as u32;
+            next[from] += 1;
+        }
+    }
+    for n in 0..linear_nodes {
+        neighbours[starts[n] as usize..starts[n + 1] as usize].sort_unstable();
+    }
+    (starts, neighbours)
 }

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::element::{Cell, basis, edge_nodes};
-use crate::mesh::{Mesh, NodeId};
+use crate::mesh::{Block, Mesh, NodeId};
 
 /// Longest edge of a column, as a share of the mean boundary edge at its foot.
 const FLAT: f64 = 0.5;
@@ -54,7 +54,7 @@ impl<'a> Columns<'a> {
     /// Its elements of two dimensions are the boundary.
     #[must_use]
     pub fn new(mesh: &'a Mesh, straight: &[DVec3]) -> Columns<'a> {
-        let rays = rays(mesh);
+        let rays = Rays::new(mesh);
         let feet = feet(mesh, straight);
         let columns = feet.par_iter().map(|foot| column(&rays, foot, straight));
         Columns { mesh, columns: columns.filter(|column| column.len() > 1).collect() }
@@ -103,24 +103,63 @@ fn angle(a: DVec3, b: DVec3) -> f64 {
     a.cross(b).length().atan2(a.dot(b)).to_degrees()
 }
 
-/// Both rays of every edge of the volume, by their first node.
-fn rays(mesh: &Mesh) -> Vec<Ray> {
-    let mut rays = Vec::new();
-    for (place, block) in mesh.blocks_of(3) {
-        let stride = block.stride(mesh.order);
-        for (element, nodes) in block.nodes.chunks_exact(stride).enumerate() {
+/// The volume elements around every corner, from which rays are read.
+struct Rays<'a> {
+    mesh: &'a Mesh,
+    /// Blocks of volume elements: number of the first element, and place in the mesh.
+    blocks: Vec<(usize, usize)>,
+    /// Elements around each corner, by node: ranges of `around`.
+    starts: Vec<u32>,
+    around: Vec<u32>,
+}
+
+impl<'a> Rays<'a> {
+    fn new(mesh: &'a Mesh) -> Rays<'a> {
+        let mut rays = Rays { mesh, blocks: Vec::new(), starts: vec![0], around: Vec::new() };
+        let mut count = 0;
+        for (place, block) in mesh.blocks_of(3) {
+            rays.blocks.push((count, place));
+            count += block.tags.len();
+        }
+        let corners = |block: &'a Block| block.elements(mesh.order).map(|nodes| &nodes[..block.cell.corner_count()]);
+        let each = || mesh.blocks_of(3).flat_map(|(_, block)| corners(block)).enumerate();
+        let last = each().flat_map(|(_, corners)| corners).max().map_or(0, |n| n.index() + 1);
+        rays.starts.resize(last + 1, 0);
+        each().flat_map(|(_, corners)| corners).for_each(|n| rays.starts[n.index() + 1] += 1);
+        for n in 0..last {
+            rays.starts[n + 1] += rays.starts[n];
+        }
+        let mut next = rays.starts.clone();
+        rays.around = vec![0; rays.starts[last] as usize];
+        for (element, corners) in each() {
+            for n in corners {
+                rays.around[next[n.index()] as usize] = element as u32;
+                next[n.index()] += 1;
+            }
+        }
+        rays
+    }
+
+    /// The rays from a node, each once, by their other ends.
+    fn from(&self, node: NodeId) -> Vec<Ray> {
+        let Some(&[first, end]) = self.starts.get(node.index()..node.index() + 2) else { return Vec::new() };
+        let mut rays = Vec::new();
+        for &element in &self.around[first as usize..end as usize] {
+            let (before, place) = self.blocks[self.blocks.partition_point(|b| b.0 <= element as usize) - 1];
+            let block = &self.mesh.blocks[place];
+            let stride = block.stride(self.mesh.order);
+            let start = (element as usize - before) * stride;
             for (edge, &ends) in block.cell.edges().iter().enumerate() {
-                let [a, b] = ends.map(|n| nodes[usize::from(n)]);
-                for (from, to) in [(a, b), (b, a)] {
-                    let (start, block, edge) = (element * stride, place as u32, edge as u8);
-                    rays.push(Ray { from, to, start, block, edge });
+                let [a, b] = ends.map(|n| block.nodes[start + usize::from(n)]);
+                for (from, to) in [(a, b), (b, a)].into_iter().filter(|(from, _)| *from == node) {
+                    rays.push(Ray { from, to, start, block: place as u32, edge: edge as u8 });
                 }
             }
         }
+        rays.sort_unstable_by_key(|ray| (ray.to, ray.block, ray.start));
+        rays.dedup_by_key(|ray| ray.to);
+        rays
     }
-    rays.par_sort_unstable_by_key(|ray| (ray.from, ray.to, ray.block, ray.start));
-    rays.dedup_by_key(|ray| (ray.from, ray.to));
-    rays
 }
 
 /// Where a column may begin.
@@ -161,23 +200,19 @@ fn foot(around: &[(NodeId, NodeId, NodeId, DVec3)], x: &[DVec3]) -> Foot {
 }
 
 /// The rays of the column on a foot; empty where there are no layers.
-fn column(rays: &[Ray], foot: &Foot, x: &[DVec3]) -> Vec<Ray> {
+fn column(rays: &Rays, foot: &Foot, x: &[DVec3]) -> Vec<Ray> {
     let along = |ray: &Ray| x[ray.to.index()] - x[ray.from.index()];
-    let from = |node: NodeId| {
-        let first = rays.partition_point(|ray| ray.from < node);
-        let count = rays[first..].partition_point(|ray| ray.from == node);
-        rays[first..first + count].iter().filter(|ray| along(ray).length() < foot.longest)
-    };
-    let straightest = |a: &(f64, &Ray), b: &(f64, &Ray)| a.0.total_cmp(&b.0).then(b.1.to.cmp(&a.1.to));
-    let enough = |&(cosine, _): &(f64, &Ray)| cosine >= SHARP;
+    let from = |node: NodeId| rays.from(node).into_iter().filter(|ray| along(ray).length() < foot.longest);
+    let straightest = |a: &(f64, Ray), b: &(f64, Ray)| a.0.total_cmp(&b.0).then(b.1.to.cmp(&a.1.to));
+    let enough = |&(cosine, _): &(f64, Ray)| cosine >= SHARP;
     let rising = from(foot.node).filter(|ray| foot.ring.binary_search(&ray.to).is_err());
-    let first = rising.map(|ray| (along(ray).normalize_or_zero().dot(foot.normal).abs(), ray));
+    let first = rising.map(|ray| (along(&ray).normalize_or_zero().dot(foot.normal).abs(), ray));
     let mut column = Vec::new();
     let mut next = first.max_by(straightest).filter(enough);
     while let Some((_, ray)) = next.filter(|_| column.len() < LONGEST) {
-        column.push(*ray);
-        let direction = along(ray).normalize_or_zero();
-        let onward = from(ray.to).map(|ray| (along(ray).normalize_or_zero().dot(direction), ray));
+        column.push(ray);
+        let direction = along(&ray).normalize_or_zero();
+        let onward = from(ray.to).map(|ray| (along(&ray).normalize_or_zero().dot(direction), ray));
         next = onward.max_by(straightest).filter(enough);
     }
     column
@@ -187,7 +222,7 @@ fn column(rays: &[Ray], foot: &Foot, x: &[DVec3]) -> Vec<Ray> {
 mod tests {
     use super::*;
     use crate::element::{Order, lattice};
-    use crate::mesh::{Block, EntityKey};
+    use crate::mesh::EntityKey;
 
     /// Three hexes of height 0.1 on a unit square, the first's bottom on the boundary:
     ///

@@ -3,6 +3,7 @@
 //! Costs are not kept: they follow from the places of the nodes.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::io::{self, Read, Write};
 
 use glam::DVec3;
@@ -18,8 +19,8 @@ pub struct Checkpoint<'a> {
     pub(super) density: Cow<'a, [u8]>,
     /// Places of all nodes.
     pub(super) x: Cow<'a, [DVec3]>,
-    /// Places of all nodes in the best state so far.
-    pub(super) best: Cow<'a, [DVec3]>,
+    /// Places in the best state so far, of the nodes that are elsewhere in it.
+    pub(super) best: BTreeMap<u32, DVec3>,
 }
 
 impl Checkpoint<'_> {
@@ -40,8 +41,13 @@ impl Checkpoint<'_> {
             out.write_all(&(number as u64).to_le_bytes())?;
         }
         out.write_all(&self.density)?;
-        for x in self.x.iter().chain(self.best.iter()).flat_map(|x| x.to_array()) {
-            out.write_all(&x.to_le_bytes())?;
+        for x in self.x.iter() {
+            write_place(out, *x)?;
+        }
+        out.write_all(&(self.best.len() as u64).to_le_bytes())?;
+        for (node, x) in &self.best {
+            out.write_all(&node.to_le_bytes())?;
+            write_place(out, *x)?;
         }
         Ok(())
     }
@@ -49,7 +55,7 @@ impl Checkpoint<'_> {
     /// Reads a state of a mesh with so many volume elements and nodes.
     ///
     /// # Errors
-    /// Those of `input`, also where it ends early.
+    /// Those of `input`, also where it ends early; [`io::ErrorKind::InvalidData`] for a node that there is not.
     pub fn read(input: &mut impl Read, elements: usize, nodes: usize) -> io::Result<Checkpoint<'static>> {
         let [full, focused] = array(input)?;
         let stage = if full == 1 { Stage::Full } else { Stage::Shape };
@@ -58,14 +64,26 @@ impl Checkpoint<'_> {
         let sweeps = number()?;
         let mut density = vec![0; elements];
         input.read_exact(&mut density)?;
-        let mut place = || -> io::Result<DVec3> {
-            let mut coordinate = || array(input).map(f64::from_le_bytes);
-            Ok(DVec3::new(coordinate()?, coordinate()?, coordinate()?))
-        };
-        let x = (0..nodes).map(|_| place()).collect::<io::Result<Vec<DVec3>>>()?;
-        let best = (0..nodes).map(|_| place()).collect::<io::Result<Vec<DVec3>>>()?;
-        Ok(Checkpoint { pace, sweeps, density: density.into(), x: x.into(), best: best.into() })
+        let x = (0..nodes).map(|_| read_place(input)).collect::<io::Result<Vec<DVec3>>>()?;
+        let mut best = BTreeMap::new();
+        for _ in 0..u64::from_le_bytes(array(input)?) {
+            let node = u32::from_le_bytes(array(input)?);
+            if node as usize >= nodes {
+                return Err(io::ErrorKind::InvalidData.into());
+            }
+            best.insert(node, read_place(input)?);
+        }
+        Ok(Checkpoint { pace, sweeps, density: density.into(), x: x.into(), best })
     }
+}
+
+fn write_place(out: &mut impl Write, x: DVec3) -> io::Result<()> {
+    x.to_array().into_iter().try_for_each(|x| out.write_all(&x.to_le_bytes()))
+}
+
+fn read_place(input: &mut impl Read) -> io::Result<DVec3> {
+    let mut coordinate = || array(input).map(f64::from_le_bytes);
+    Ok(DVec3::new(coordinate()?, coordinate()?, coordinate()?))
 }
 
 fn array<const N: usize>(input: &mut impl Read) -> io::Result<[u8; N]> {

@@ -71,3 +71,10 @@ pub struct Anchor {
     /// Distance that costs as much as one element at its worst shape.
     pub slack: f64,
 }
+
+impl Anchor {
+    /// The same spring with so many times the slack.
+    fn loosened(self, looseness: f64) -> Anchor {
+        Anchor { slack: self.slack * looseness, ..self }
+    }
+}

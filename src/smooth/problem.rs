@@ -99,9 +99,19 @@ impl<'a> Problem<'a> {
         cells
     }
 
+    /// Costs of all elements at the places `x` of all nodes.
+    pub(super) fn all_costs(&self, kernels: &Kernels, x: &[DVec3]) -> Vec<ElementCost> {
+        self.costs(kernels, x, (0..self.element_count()).into_par_iter())
+    }
+
     /// Costs of the given elements at the places `x` of all nodes.
-    pub(super) fn costs(&self, kernels: &Kernels, x: &[DVec3], elements: &[usize]) -> Vec<ElementCost> {
-        let cost = |(scratch, points, targets): &mut (Scratch, Vec<DVec3>, Vec<DVec3>), &e: &usize| {
+    pub(super) fn costs(
+        &self,
+        kernels: &Kernels,
+        x: &[DVec3],
+        elements: impl IndexedParallelIterator<Item = usize>,
+    ) -> Vec<ElementCost> {
+        let cost = |(scratch, points, targets): &mut (Scratch, Vec<DVec3>, Vec<DVec3>), e: usize| {
             let nodes = self.nodes(e);
             let origin = self.straight[nodes[0].index()];
             points.clear();
@@ -116,7 +126,7 @@ impl<'a> Problem<'a> {
             let c_jac = kernels.of(self.cell(e)).c_jac(&element, scratch);
             ElementCost { c_wcn, mean_c_wcn, c_jac, cut }
         };
-        elements.par_iter().with_min_len(64).map_init(Default::default, cost).collect()
+        elements.with_min_len(64).map_init(Default::default, cost).collect()
     }
 }
 

@@ -147,7 +147,7 @@ impl Ruler<'_> {
         let entities = self.geometry.of(target);
         let group = group(self.model, &entities)?.ok()?;
         let places: Vec<DVec3> = nodes.iter().map(|n| self.linked.mesh.points[n.index()]).collect();
-        let feet = group.closest_batch(&places, &[]);
+        let feet = group.closest_batch(&places, &mut []);
         let worst = (0..feet.len()).max_by(|&a, &b| feet[a].distance.total_cmp(&feet[b].distance))?;
         let on = entities.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
         let off = feet.iter().filter(|foot| foot.distance > self.tolerance).count();

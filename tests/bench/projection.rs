@@ -6,7 +6,7 @@
 #[path = "../common/iges.rs"]
 mod iges;
 
-use cad::{FaceId, Foot, Group, Kind, Model, READER_SUBCOMMAND, ReadOptions};
+use cad::{FaceId, Group, Hint, Kind, Model, READER_SUBCOMMAND, ReadOptions};
 use glam::DVec3;
 use iges::Patch;
 use opencascade_sys as sys;
@@ -159,15 +159,25 @@ fn compare(
 ) {
     let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let (one, two) = (pool(1), pool(2));
-    let (ours, feet) = rate(xs.len(), |r| one.install(|| group.closest_batch(&xs[r], &[])));
-    let (pair, _) = rate(xs.len(), |r| two.install(|| group.closest_batch(&xs[r], &[])));
-    let hints: Vec<Option<Foot>> = feet.iter().copied().map(Some).collect();
+    let (ours, feet) = rate(xs.len(), |r| one.install(|| group.closest_batch(&xs[r], &mut [])));
+    let (pair, _) = rate(xs.len(), |r| two.install(|| group.closest_batch(&xs[r], &mut [])));
+    let mut hints = vec![Hint::default(); xs.len()];
+    group.closest_batch(xs, &mut hints);
     // a later sweep of the smoother: every point has moved a little, in any direction
     let mut random = Random(2);
     let mut shake = || 2.0 * random.unit() - 1.0;
     let moves = feet.iter().map(|foot| 0.02 * foot.distance * DVec3::new(shake(), shake(), shake()));
     let moved: Vec<DVec3> = xs.iter().zip(moves).map(|(x, by)| *x + by).collect();
-    let (hinted, _) = rate(xs.len(), |r| one.install(|| group.closest_batch(&moved[r.clone()], &hints[r])));
+    // there and back: each run has the hints of the one before
+    let mut there = false;
+    let (hinted, carried) = rate(xs.len(), |r| {
+        there ^= r.start == 0;
+        let at = if there { &moved[r.clone()] } else { &xs[r.clone()] };
+        one.install(|| group.closest_batch(at, &mut hints[r]))
+    });
+    let afresh = two.install(|| group.closest_batch(if there { &moved } else { xs }, &mut []));
+    let afresh: Vec<f64> = afresh.iter().map(|foot| foot.distance).collect();
+    let misled = wrong(carried.iter().map(|foot| foot.distance), &afresh, diagonal);
     let (bare, quick) = rate(xs.len(), |r| xs[r].iter().map(|&x| group.closest_without_proof(x)).collect());
     let some = &xs[..case.global.min(xs.len())];
     let start = Instant::now();
@@ -177,7 +187,11 @@ fn compare(
     let best_of_all: Vec<f64> = best.iter().zip(&theirs).map(|(a, b)| a.min(*b)).collect();
     let unproven = feet.iter().filter(|foot| !foot.is_proven()).count();
     println!("  {name:4} ours {ours:9.3e}/s, {unproven} of {} not proven", xs.len());
-    println!("       hinted {hinted:9.3e}/s = {:.2} x; two threads {:.2} x one", hinted / ours, pair / ours);
+    println!(
+        "       hinted {hinted:9.3e}/s = {:.2} x, {misled} wrong; two threads {:.2} x one",
+        hinted / ours,
+        pair / ours
+    );
     println!(
         "       seed + Newton {bare:9.3e}/s: ours is {:.2} x; OCCT global {global:9.3e}/s: ours is {:.0} x",
         ours / bare,
@@ -205,7 +219,7 @@ fn weeble() {
     let group = Group::of_faces(&model, &faces).unwrap();
     let xs = queries(&model, &faces, 100_000, 0.005);
     let start = Instant::now();
-    let feet = group.closest_batch(&xs, &[]);
+    let feet = group.closest_batch(&xs, &mut []);
     let unproven = feet.iter().filter(|foot| !foot.is_proven()).count();
     let seconds = start.elapsed().as_secs_f64();
     println!(

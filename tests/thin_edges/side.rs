@@ -95,7 +95,7 @@ impl<'a> Side<'a> {
         let one = Group::of_faces(self.model, sides).unwrap();
         let points = self.chord_points(p);
         let xs: Vec<DVec3> = points.iter().map(|chord| chord.point).collect();
-        let (right, mixed) = (own.closest_batch(&xs, &[]), one.closest_batch(&xs, &[]));
+        let (right, mixed) = (own.closest_batch(&xs, &mut []), one.closest_batch(&xs, &mut []));
         let mut tally = Tally { points: points.len(), ..Tally::default() };
         for ((chord, right), mixed) in points.iter().zip(&right).zip(&mixed) {
             let at_home = right.point.distance(chord.home) < NEAR * chord.size;

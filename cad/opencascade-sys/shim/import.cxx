@@ -22,6 +22,7 @@
 #include <STEPControl_Controller.hxx>
 #include <STEPControl_Reader.hxx>
 #include <StepData_StepModel.hxx>
+#include <StepGeom_CartesianPoint.hxx>
 #include <StepRepr_NextAssemblyUsageOccurrence.hxx>
 #include <StepRepr_GlobalUnitAssignedContext.hxx>
 #include <StepRepr_RepresentationItem.hxx>
@@ -35,6 +36,7 @@
 #include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
 #include <cctype>
+#include <cmath>
 #include <iostream>
 #include <map>
 #include <set>
@@ -192,15 +194,25 @@ std::string instance_name(const Handle(StepData_StepModel)& model, const Handle(
   return id.empty() ? "#" + std::to_string(model->IdentLabel(usage)) : id;
 }
 
+// OCCT takes an overflowing number for infinity, and may search without end then.
+void refuse_infinite(const Handle(StepData_StepModel)& model, const Handle(Standard_Transient)& entity) {
+  const auto point = Handle(StepGeom_CartesianPoint)::DownCast(entity);
+  if (point.IsNull()) return;
+  for (int i = 1; i <= point->NbCoordinates(); i++)
+    if (!std::isfinite(point->CoordinatesValue(i))) throw std::runtime_error(step_id(model, entity) + ": coordinate " + std::to_string(i) + " is not a finite number");
+}
+
 void read_step(const std::string& path, Source& source) {
   STEPControl_Controller::Init();
   STEPControl_Reader reader;
   Interface_Static::SetCVal("xstep.cascade.unit", "MM");
   check_status(reader.ReadFile(path.c_str()));
   Handle(StepData_StepModel) model = Handle(StepData_StepModel)::DownCast(reader.WS()->Model());
-  for (int i = 1; i <= model->NbEntities(); i++)
+  for (int i = 1; i <= model->NbEntities(); i++) {
     if (model->IsErrorEntity(i) || model->IsRedefinedContent(i))
       warn(source, step_id(model, model->Value(i)), std::string("malformed ") + model->Value(i)->DynamicType()->Name());
+    else refuse_infinite(model, model->Value(i));
+  }
   warn_of_fails(reader, source, [&](const Handle(Standard_Transient)& entity) { return step_id(model, entity); });
   reader.TransferRoots();
   source.shape = reader.OneShape();

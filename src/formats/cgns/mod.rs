@@ -46,7 +46,7 @@ pub(super) fn read(path: &Path, length: u64, options: &ReadOptions) -> Result<Me
     // Reading needs no lock, and some file systems have none.
     let unlocked = ("HDF5_USE_FILE_LOCKING", "FALSE".to_owned());
     let outcome = run(&options.reader, READER_SUBCOMMAND, path, &[unlocked], limits).map_err(|error| match error {
-        ChildError::TimedOut => {
+        ChildError::TimedOut { .. } => {
             refused(format!("reading took longer than {} s and was ended: a malformed file", limits.timeout.as_secs()))
         }
         ChildError::Run(source) => {
