@@ -67,6 +67,7 @@ unit: setup-build venv ## tests and doctests, by cargo-nextest where it is insta
 
 bench: build ## benchmarks; minutes, not a test
 	cargo bench --bench curve
+	cargo bench --bench formats
 	cargo bench -p sagitta-cad --bench projection
 
 oracle: setup-build ## closest points beside OCCT's own searches and dense grids; SAGITTA_CAD=DIR adds foreign CAD; minutes

@@ -122,7 +122,8 @@ fn root(leads: &BTreeMap<NodeId, (NodeId, DAffine3)>, node: NodeId) -> (NodeId, 
 
 /// The map from master to slave that the record gives, in whichever direction it takes the nodes onto one another; where it gives none, a
 /// shift that does.
-fn map_of(mesh: &Mesh, record: &Periodic) -> Option<DAffine3> {
+#[must_use]
+pub fn map_of(mesh: &Mesh, record: &Periodic) -> Option<DAffine3> {
     let slack = CONGRUENT * Aabb::of_points(mesh.points.iter().copied()).diagonal();
     let at = |node: NodeId| mesh.points[node.index()];
     let fits = |map: &DAffine3| {

@@ -386,11 +386,10 @@ fn tie(job: &Job, linear: &Mesh, boundary: &Boundary, model: Model) -> Result<(a
     let straight = straight.map_err(|cause| PipelineError::UnknownPatch { mesh: job.mesh.clone(), cause })?;
     let attempt = |model: &Model| -> Result<associate::Tied, PipelineError> {
         let choose = |claims: &mut associate::Claims| claims.leave_straight(boundary, &straight);
-        associate::tie(job.linkage.as_deref(), linear, boundary, model, job.max_offset, &choose).map_err(|error| {
-            match error {
-                TieError::Linkage(error) => error.into(),
-                TieError::Associate(cause) => refused(&job.mesh, &job.cad, cause),
-            }
+        let linkage = job.linkage.as_deref().map(|path| [path, &job.mesh]);
+        associate::tie(linkage, linear, boundary, model, job.max_offset, &choose).map_err(|error| match error {
+            TieError::Linkage(error) => error.into(),
+            TieError::Associate(cause) => refused(&job.mesh, &job.cad, cause),
         })
     };
     let first = attempt(&model);

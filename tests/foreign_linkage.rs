@@ -149,6 +149,7 @@ fn bad_files_are_told_of_within_seconds_and_bounds() {
         ("negative.xml", good.replacen("1 98 318 9\n", "1 98 -318 9\n", 1), false, "ML203"),
         ("zero.xml", good.replacen("1 98 318 9\n", "1 98 0 9\n", 1), false, "ML203"),
         ("empty.xml", String::new(), false, "ML001"),
+        ("nothing.xml", "<MeshLink version=\"1.0\" xmlns=\"https://cadence.com\"/>".to_owned(), false, "ML108"),
     ];
     let (mesh, cad, output) =
         (fixture("cylinder_bl", "msh"), fixture("cylinder_bl", "step"), dir.path().join("out.msh"));
@@ -213,15 +214,21 @@ fn what_is_written_is_valid_by_both_schemas() {
         Some(folder) => schemas.push(Path::new(&folder).join("MeshLink.xsd")),
         None => common::warn("SAGITTA_MESHLINK is not set: written linkage is held against our own schema only"),
     }
-    for case in ["weeble", "weeble_hybrid", "cylinder_bl", "torus", "wing_sharp"] {
-        let output = dir.path().join(format!("{case}.xml"));
+    let periodic = root().join("fixtures/periodic/sector");
+    let mut cases: Vec<PathBuf> = ["weeble", "weeble_hybrid", "cylinder_bl", "torus", "wing_sharp"]
+        .map(|case| fixture(case, "msh").with_extension(""))
+        .to_vec();
+    cases.push(periodic);
+    for case in cases {
+        let output = dir.path().join("link.xml");
         for more in [&[][..], &["--ignore-tags"]] {
-            let arguments = args!["link", fixture(case, "msh"), "--cad", fixture(case, "step"), "-o", output];
+            let [mesh, cad] = ["msh", "step"].map(|extension| case.with_extension(extension));
+            let arguments = args!["link", mesh, "--cad", cad, "-o", output];
             sagitta(arguments.into_iter().chain(more.iter().map(std::ffi::OsString::from))).expect(0);
             for schema in &schemas {
                 let verdict =
                     Command::new("xmllint").args(["--noout", "--schema"]).arg(schema).arg(&output).output().unwrap();
-                assert!(verdict.status.success(), "{case}: {}", String::from_utf8_lossy(&verdict.stderr));
+                assert!(verdict.status.success(), "{}: {}", case.display(), String::from_utf8_lossy(&verdict.stderr));
             }
         }
     }

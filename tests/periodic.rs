@@ -123,6 +123,35 @@ fn wavy_sides_of_a_block_by_the_linkage_file() {
     assert!(formats::read(&output).unwrap().periodic.is_empty());
 }
 
+/// `$Periodic` of a mesh file goes over into the linkage file, from which it works as well.
+#[test]
+fn pairs_of_the_mesh_file_survive_in_the_linkage_file() {
+    let dir = tempfile::tempdir().unwrap();
+    let [linkage, bare, output] = ["sector.xml", "sector.msh", "out.msh"].map(|name| dir.path().join(name));
+    let (mesh, cad) = (file("sector.msh"), file("sector.step"));
+    for more in [&[][..], &args!["--ignore-tags"]] {
+        let arguments = args!["link", mesh, "--cad", cad, "-o", linkage];
+        sagitta(arguments.into_iter().chain(more.iter().cloned())).expect(0);
+        let text = std::fs::read_to_string(&linkage).unwrap();
+        assert_eq!(text.matches("<MeshElementLinkage").count(), 1, "{text}");
+        sagitta(args!["validate", linkage, "--mesh", mesh, "--cad", cad, "--strict"]).expect(0);
+        let mut unpaired = formats::read(&mesh).unwrap();
+        assert!(!unpaired.periodic.is_empty());
+        unpaired.periodic.clear();
+        formats::write(&bare, &unpaired, &formats::WriteOptions::default()).unwrap();
+        let curve = |more: &[OsString]| {
+            let arguments = args!["curve", bare, "--cad", cad, "--order", "3", "-q", "-o", output];
+            sagitta(arguments.into_iter().chain(more.iter().cloned())).expect(0);
+            formats::read(&output).unwrap()
+        };
+        assert!(curve(&[]).periodic.is_empty());
+        let curved = curve(&args!["--linkage", linkage]);
+        assert_pairs(&curved);
+        let apart = apart(&curved, turned);
+        assert!(apart <= CONGRUENT, "{apart:e}");
+    }
+}
+
 #[test]
 fn a_pair_that_is_none_is_refused_and_found() {
     let dir = tempfile::tempdir().unwrap();

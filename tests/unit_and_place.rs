@@ -4,6 +4,7 @@
 #[macro_use]
 mod common;
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use common::input::{Input, Place};
@@ -62,6 +63,52 @@ fn the_factor_between_units_is_named_and_works() {
 fn auto_is_one_where_the_unit_is_right() {
     let (report, _) = curved(&Place::new(), Input::default().with(&["--cad-scale", "auto"]));
     assert_eq!(report["input"]["cad_scale"], 1.0);
+}
+
+#[test]
+fn link_and_validate_take_the_factor_too() {
+    let place = Place::new();
+    let mesh = scaled(&place, 1000.0);
+    let (cad, output) = (fixture("cylinder_bl", "step"), place.dir.path().join("out/link.xml"));
+    for tags in [&[][..], &args!["--ignore-tags"]] {
+        let link = |more: &[OsString]| {
+            let arguments = args!["link", mesh, "--cad", cad, "-o", output];
+            sagitta(arguments.into_iter().chain(tags.iter().chain(more).cloned()))
+        };
+        let told = link(&[]).expect(2).stderr;
+        assert!(told.contains("--cad-scale 1000 ") && told.lines().count() == 1, "{told}");
+        for scale in ["auto", "1000"] {
+            let told = link(&args!["--cad-scale", scale]).expect(0).stdout;
+            let source = if tags.is_empty() { "the mesh's entity tags" } else { "geometry" };
+            assert!(told.contains(source), "{told}");
+            let validate = |more: &[OsString]| {
+                let arguments = args!["validate", output, "--mesh", mesh, "--cad", cad, "--json"];
+                sagitta(arguments.into_iter().chain(more.iter().cloned()))
+            };
+            let told: Value = serde_json::from_str(&validate(&args!["--cad-scale", scale]).expect(0).stdout).unwrap();
+            assert_eq!((number(&told, "/cad_scale"), number(&told, "/errors")), (1000.0, 0.0));
+            let unscaled: Value = serde_json::from_str(&validate(&[]).expect(1).stdout).unwrap();
+            assert_eq!(unscaled["findings"][0]["code"], "ML511", "{unscaled:#}");
+        }
+    }
+    // The unit is right already.
+    let told = sagitta(args!["link", fixture("cylinder_bl", "msh"), "--cad", cad, "-o", output, "--cad-scale", "auto"]);
+    assert!(told.expect(0).stdout.contains("entity tags"));
+}
+
+#[test]
+fn reading_the_cad_is_given_up_in_time() {
+    let place = Place::new();
+    let (mesh, cad, output) =
+        (fixture("weeble", "msh"), fixture("weeble", "step"), place.dir.path().join("out/link.xml"));
+    let linkage = fixture("weeble", "meshlink.xml");
+    for arguments in [
+        args!["link", mesh, "--cad", cad, "-o", output, "--cad-timeout", "0.0001"].to_vec(),
+        args!["validate", linkage, "--cad", cad, "--cad-timeout", "0.0001"].to_vec(),
+    ] {
+        let told = sagitta(arguments).expect(2).stderr;
+        assert!(told.contains("weeble.step") && told.lines().count() == 1, "{told}");
+    }
 }
 
 #[test]

@@ -69,7 +69,7 @@ macro_rules! codes {
 
 codes! {
     /// The file is not XML, is broken or cut off, or is no MeshLink document; nothing else was checked.
-    Unreadable = "ML001", Error, "mend the place, or write the file anew";
+    Unreadable = "ML001", Error, "then validate again, as nothing else was checked";
     /// The elements are in another namespace than MeshLink's; they are read by their local names.
     ForeignNamespace = "ML101", Warning, "put xmlns=\"https://cadence.com\" on the root element";
     /// An element that the format does not have at this place; it is skipped.
@@ -130,6 +130,8 @@ codes! {
     BadTransform = "ML310", Warning, "write a 4x4 matrix, row by row";
     /// A linkage whose source or target is neither the name nor the mid of a mesh element.
     UnknownMeshElement = "ML311", Warning, "write the name or the mid of a sheet or string of this document";
+    /// A linkage whose source and target are of different kinds.
+    UnequalPair = "ML312", Warning, "link a sheet with a sheet, a string with a string";
     /// A point index that is beyond the mesh's nodes.
     IndexBeyondMesh = "ML401", Error, "correct the index, or give the mesh that the linkage was written for";
     /// All indices are off by one: the file counts points from 0, or from 2, where the format counts from 1.
@@ -158,6 +160,8 @@ codes! {
     NotPeriodic = "ML413", Error, "correct the transform, or what it pairs";
     /// A linked point that is on no boundary face.
     StrayPoint = "ML414", Warning, "correct the index";
+    /// A mesh model that is called as no zone of the mesh file is; what it links is not checked.
+    UnknownZone = "ML415", Error, "call the model as the zone whose points it counts: /Base/zone, or the zone's name";
     /// A reference to nothing in the CAD file, or to several entities of it.
     UnknownReference = "ML501", Error, "write face-N, edge-N, vertex-N, step:#N, iges:DN or name:NAME as the CAD file has it";
     /// A reference to an entity of the wrong kind: sheets lie on faces, strings on edges or faces.
@@ -174,8 +178,8 @@ codes! {
     SharpEdgeCrossed = "ML507", Warning, "mesh up to the edge, and link the mesh edges on it by a string";
     /// Mesh edges inside one sheet that lie on a sharp edge of the CAD, with no string that holds them there.
     SharpEdgeFree = "ML508", Warning, "link the mesh edges on it by a string";
-    /// Geometry in a format that OpenCASCADE cannot read; what is linked to it is not compared with CAD.
-    UnreadableGeometry = "ML509", Note, "give the same geometry as STEP, IGES or BREP, with references that it has";
+    /// Geometry in a format that OpenCASCADE cannot read, or in another file than the given one; what is linked to it is not compared with CAD.
+    UnreadableGeometry = "ML509", Note, "give the same geometry in one file of STEP, IGES or BREP, with references that it has";
     /// The CAD file that was given is not the one that the linkage names.
     OtherCadFile = "ML510", Warning, "make sure that the references mean the same entities in this file";
     /// CAD and mesh differ in size by a factor between units, or lie apart.
@@ -195,6 +199,8 @@ pub struct Finding {
     pub code: Code,
     /// Its place.
     pub origin: Origin,
+    /// The word of the element's content that it is about, from 0, where it stands at the element.
+    pub(crate) word: Option<usize>,
     /// What is wrong, in one sentence without its end.
     pub message: String,
 }
@@ -225,7 +231,7 @@ impl fmt::Display for Finding {
 /// a million dangling references must not fill the memory.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Findings {
-    list: Vec<Finding>,
+    pub(crate) list: Vec<Finding>,
     counts: BTreeMap<Code, usize>,
 }
 
@@ -235,10 +241,19 @@ impl Findings {
 
     /// Adds a finding; the message is made only if it is kept.
     pub fn push(&mut self, code: Code, origin: Origin, message: impl FnOnce() -> String) {
+        self.add(code, origin, None, message);
+    }
+
+    /// Adds a finding about one word of the content of the element at `origin`, from 0: [`Findings::place_words`] finds its place.
+    pub fn push_word(&mut self, code: Code, origin: Origin, word: Option<usize>, message: impl FnOnce() -> String) {
+        self.add(code, origin, word, message);
+    }
+
+    fn add(&mut self, code: Code, origin: Origin, word: Option<usize>, message: impl FnOnce() -> String) {
         let count = self.counts.entry(code).or_default();
         *count += 1;
         if *count <= Self::KEPT {
-            self.list.push(Finding { code, origin, message: message() });
+            self.list.push(Finding { code, origin, word, message: message() });
         }
     }
 

@@ -47,6 +47,7 @@ mod origin;
 mod read;
 mod resolve;
 mod vocabulary;
+mod words;
 mod write;
 
 pub use document::{Attribute, AttributeGroup, Document, ElementLinkage};

@@ -137,6 +137,13 @@ pub enum Encoding {
     Base64,
 }
 
+impl Encoding {
+    /// The word of a content that is its index of this number, both from 0; base64 has no words.
+    pub fn word(self, index: usize) -> Option<usize> {
+        (self == Self::Text).then_some(index)
+    }
+}
+
 /// Faces of one shape on one piece of geometry (`MeshFace`).
 #[derive(Clone, Debug, PartialEq)]
 pub struct FaceRun {

@@ -74,7 +74,7 @@ impl<R: BufRead> Cursor<R> {
                 Element::GeometryGroup => document.geometry_groups.extend(self.geometry_group()?),
                 Element::MeshFile => document.mesh_files.push(self.mesh_file()?),
                 Element::Transform => document.transforms.extend(self.transform()?),
-                Element::MeshElementLinkage => document.linkages.push(self.linkage()?),
+                Element::MeshElementLinkage => document.linkages.extend(self.linkage()?),
                 _ => self.unknown()?,
             }
         }
@@ -130,17 +130,20 @@ impl<R: BufRead> Cursor<R> {
         Ok(id.map(|id| Transform { id, name, aref, content: self.string(), origin }))
     }
 
-    fn linkage(&mut self) -> Result<ElementLinkage, ReadError> {
+    /// `None` where it does not say what it links.
+    fn linkage(&mut self) -> Result<Option<ElementLinkage>, ReadError> {
+        let [source, target] = ["sourceEntityRef", "targetEntityRef"].map(|name| self.required(name));
+        let is_whole = ["sourceEntityRef", "targetEntityRef"].iter().all(|name| self.tag.get(name).is_some());
         let linkage = ElementLinkage {
-            source: self.required("sourceEntityRef"),
-            target: self.required("targetEntityRef"),
+            source,
+            target,
             transform: self.optional_id("xref"),
             aref: self.optional_id("aref"),
             name: self.text_of("name"),
             origin: self.tag.origin,
         };
         self.nothing_inside()?;
-        Ok(linkage)
+        Ok(Some(linkage).filter(|_| is_whole))
     }
 }
 

@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use corpus::{cases, mutations};
+use corpus::{cases, mutations::mutations};
 
 /// The names of the files in `directory` that the schema accepts; `None` where there is no xmllint.
 fn accepted(directory: &Path) -> Option<HashSet<String>> {

@@ -3,10 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use cad::{EntityId, Model, ReferenceError};
-use linkage_schema::{Entity, ModelLinks};
-use rustc_hash::FxHashMap;
+use linkage_schema::{Document, Entity, GeometryFile, ModelLinks, Resolution};
 
-use super::{Boundary, Claimed, Claims, NotPeriodic, periodic_records, periodic_sheets};
+use super::{Boundary, Claimed, Claims, NotPeriodic, Numbering, Part, UnknownZone, periodic_records, periodic_sheets};
 use crate::element::Order;
 use crate::mesh::{EntityKey, Mesh, NodeId};
 
@@ -24,6 +23,24 @@ pub enum LinkageError {
     Empty {
         /// The linkage file.
         file: PathBuf,
+    },
+    /// It links several mesh files, of which none is the one to be curved.
+    #[error("{}: links the mesh files {named}, and none of them is {}; give the mesh that it speaks of", file.display(), mesh.display())]
+    OtherMeshes {
+        /// The linkage file.
+        file: PathBuf,
+        /// The names of its mesh files.
+        named: String,
+        /// The mesh.
+        mesh: PathBuf,
+    },
+    /// A mesh model that is called as no zone is.
+    #[error("{place}: {source}")]
+    Zone {
+        /// File, line and column.
+        place: String,
+        /// The name, and those of the zones.
+        source: UnknownZone,
     },
     /// A reference to nothing in the CAD.
     #[error("{place}: {label} {source}")]
@@ -67,25 +84,42 @@ pub enum LinkageError {
     },
 }
 
-/// Reads a linkage file and looks its references and node numbers up.
+/// Reads a linkage file and looks up what it says of the mesh in the file `mesh_file`.
 ///
 /// # Errors
 /// [`LinkageError`].
-pub fn read_linkage(path: &Path, mesh: &Mesh, boundary: &Boundary, model: &Model) -> Result<Claims, LinkageError> {
+pub fn read_linkage(
+    path: &Path,
+    mesh_file: &Path,
+    mesh: &Mesh,
+    boundary: &Boundary,
+    model: &Model,
+) -> Result<Claims, LinkageError> {
     let document = linkage_schema::read_path(path)?.accept()?;
     let resolution = linkage_schema::resolve(&document).accept(path)?;
     if resolution.models.is_empty() {
         return Err(LinkageError::Empty { file: path.to_owned() });
     }
-    let numbers = mesh.node_tags.iter().zip(0..).filter_map(|(&tag, n)| Some((tag, NodeId::new(n).ok()?))).collect();
-    let reader = Reader { path, mesh, boundary, model, numbers };
-    let mut claims = Claims { trusted: names(&document, model.path()), ..Claims::default() };
-    for links in &resolution.models {
-        reader.model(links, &mut claims)?;
+    let models = models_of(&resolution, mesh_file);
+    if models.is_empty() && document.mesh_files.len() > 1 {
+        let named = document.mesh_files.iter().map(|file| &file.filename[..]).collect::<Vec<_>>().join(", ");
+        return Err(LinkageError::OtherMeshes { file: path.to_owned(), named, mesh: mesh_file.to_owned() });
+    }
+    let models = if models.is_empty() { resolution.models.iter().collect() } else { models };
+    let numbering = Numbering::new(mesh);
+    let geometry = own_geometry(&document, model.path());
+    let reader = Reader { path, mesh, boundary, model, numbering: &numbering, geometry: &geometry, part: Part::Whole };
+    let trusted = document.geometry_files.iter().any(|file| same_file(&file.filename, model.path()));
+    let mut claims = Claims { trusted, ..Claims::default() };
+    claims.notes.extend(not_given(path, &document, &geometry));
+    for links in models {
+        reader.within(links)?.model(links, &mut claims)?;
     }
     for pair in &resolution.pairs {
         let Some(sheets) = periodic_sheets(pair, &resolution) else { continue };
-        let node = |index: u32| reader.numbers.get(&u64::from(index)).copied();
+        let node = |model: &linkage_schema::MeshModel, index: u32| {
+            numbering.node(numbering.part(&model.reference).ok()?, index.into())
+        };
         let records = periodic_records(pair, sheets, mesh, boundary, &node);
         let place = || reader.place(pair.linkage.origin);
         claims.periodic.extend(records.map_err(|cause| LinkageError::Periodic { place: place(), cause })?);
@@ -93,9 +127,25 @@ pub fn read_linkage(path: &Path, mesh: &Mesh, boundary: &Boundary, model: &Model
     Ok(claims)
 }
 
-/// Whether every CAD file that the document names has the name of this one.
-fn names(document: &linkage_schema::Document, cad: &Path) -> bool {
-    !document.geometry_files.is_empty() && document.geometry_files.iter().all(|file| same_file(&file.filename, cad))
+/// The models of a mesh file, as far as the document names that file.
+#[must_use]
+pub fn models_of<'r, 'a>(resolution: &'r Resolution<'a>, mesh_file: &Path) -> Vec<&'r ModelLinks<'a>> {
+    resolution.models.iter().filter(|links| same_file(&links.file.filename, mesh_file)).collect()
+}
+
+/// The geometry files of a document that a CAD file can stand for: those of its name, or all where none has it.
+#[must_use]
+pub fn own_geometry<'d>(document: &'d Document, cad: &Path) -> Vec<&'d GeometryFile> {
+    let named: Vec<_> = document.geometry_files.iter().filter(|file| same_file(&file.filename, cad)).collect();
+    if named.is_empty() { document.geometry_files.iter().collect() } else { named }
+}
+
+/// A note on geometry files beside the one that was given.
+fn not_given(path: &Path, document: &Document, own: &[&GeometryFile]) -> Option<String> {
+    let others = document.geometry_files.iter().filter(|file| !own.iter().any(|own| std::ptr::eq(*own, *file)));
+    let others = others.map(|file| &file.filename[..]).collect::<Vec<_>>().join(", ");
+    let what = "names further CAD files, what is linked to them counts as not linked";
+    (!others.is_empty()).then(|| format!("{} {what}: {others}", path.display()))
 }
 
 /// Whether a document means this file: it has the same name, in whatever folder; documents may leave the extension out.
@@ -106,15 +156,25 @@ pub fn same_file(named: &str, path: &Path) -> bool {
     [path.file_name(), path.file_stem()].into_iter().flatten().any(|own| own.to_string_lossy() == name)
 }
 
+#[derive(Clone, Copy)]
 struct Reader<'a> {
     path: &'a Path,
     mesh: &'a Mesh,
     boundary: &'a Boundary,
     model: &'a Model,
-    numbers: FxHashMap<u64, NodeId>,
+    numbering: &'a Numbering<'a>,
+    geometry: &'a [&'a GeometryFile],
+    part: Part,
 }
 
 impl Reader<'_> {
+    /// The reader of a model's indices.
+    fn within(self, links: &ModelLinks) -> Result<Self, LinkageError> {
+        let place = || self.place(links.model.origin);
+        let part = self.numbering.part(&links.model.reference);
+        Ok(Reader { part: part.map_err(|source| LinkageError::Zone { place: place(), source })?, ..self })
+    }
+
     fn model(&self, links: &ModelLinks, claims: &mut Claims) -> Result<(), LinkageError> {
         self.named(links, claims)?;
         for sheet in &links.sheets {
@@ -202,11 +262,11 @@ impl Reader<'_> {
     }
 
     fn node(&self, index: u32, place: &str, label: &str) -> Result<NodeId, LinkageError> {
-        self.numbers.get(&u64::from(index)).copied().ok_or_else(|| LinkageError::Node {
+        self.numbering.node(self.part, index.into()).ok_or_else(|| LinkageError::Node {
             place: place.to_owned(),
             label: label.to_owned(),
             index,
-            last: self.numbers.keys().copied().max().unwrap_or(0),
+            last: self.numbering.last(self.part),
         })
     }
 
@@ -221,7 +281,7 @@ impl Reader<'_> {
 
     fn entities(&self, entities: &[Entity], place: &str, label: &str) -> Result<Vec<EntityId>, LinkageError> {
         let mut all = Vec::new();
-        for entity in entities {
+        for entity in entities.iter().filter(|entity| self.geometry.iter().any(|own| std::ptr::eq(*own, entity.file))) {
             let found = self.model.resolve(entity.reference).map_err(|source| LinkageError::Reference {
                 place: place.to_owned(),
                 label: label.to_owned(),

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::{DAffine3, DMat4};
-use linkage_schema::{ElementPair, MeshElement, Resolution, Sheet, SheetBody};
+use linkage_schema::{ElementPair, MeshElement, MeshModel, Resolution, Sheet, SheetBody};
 use rustc_hash::FxHashMap;
 
 use super::Boundary;
@@ -23,35 +23,45 @@ pub struct NotPeriodic {
     transform: String,
 }
 
-/// Whether a linkage is a periodic pair of sheets: it says so, or says nothing and has a transform.
-#[must_use]
-pub fn periodic_sheets<'a>(pair: &ElementPair<'a>, resolution: &Resolution<'a>) -> Option<[&'a Sheet; 2]> {
-    let kind = resolution.attribute(pair.linkage.aref, "linkage type");
-    let is_periodic = kind.map_or(pair.transform.is_some(), |kind| kind.eq_ignore_ascii_case("periodic"));
-    match (pair.source, pair.target) {
-        (Some(MeshElement::Sheet(source)), Some(MeshElement::Sheet(target))) if is_periodic => Some([source, target]),
-        _ => None,
-    }
+/// A sheet of a periodic pair, and the model in which its points are counted.
+#[derive(Clone, Copy, Debug)]
+pub struct PeriodicSheet<'a> {
+    sheet: &'a Sheet,
+    model: &'a MeshModel,
 }
 
-/// The pairs of mesh entities that a pair of sheets makes.
+/// Whether a linkage is a periodic pair of sheets: it says so, or says nothing and has a transform.
+#[must_use]
+pub fn periodic_sheets<'a>(pair: &ElementPair<'a>, resolution: &Resolution<'a>) -> Option<[PeriodicSheet<'a>; 2]> {
+    let kind = resolution.attribute(pair.linkage.aref, "linkage type");
+    let is_periodic = kind.map_or(pair.transform.is_some(), |kind| kind.eq_ignore_ascii_case("periodic"));
+    let in_model = |element: Option<MeshElement<'a>>| {
+        let Some(MeshElement::Sheet(sheet)) = element else { return None };
+        let holds = |model: &&'a MeshModel| model.sheets.iter().any(|own| std::ptr::eq(own, sheet));
+        let model = resolution.models.iter().map(|links| links.model).find(holds)?;
+        Some(PeriodicSheet { sheet, model })
+    };
+    Some([in_model(pair.source)?, in_model(pair.target)?]).filter(|_| is_periodic)
+}
+
+/// The pairs of mesh entities that a pair of sheets makes; `node` tells what an index means in a model.
 ///
 /// # Errors
 /// [`NotPeriodic`].
 pub fn periodic_records(
     pair: &ElementPair<'_>,
-    [source, target]: [&Sheet; 2],
+    [source, target]: [PeriodicSheet<'_>; 2],
     mesh: &Mesh,
     boundary: &Boundary,
-    node: &dyn Fn(u32) -> Option<NodeId>,
+    node: &dyn Fn(&MeshModel, u32) -> Option<NodeId>,
 ) -> Result<Vec<Periodic>, NotPeriodic> {
-    let [masters, slaves] = [source, target].map(|sheet| nodes(sheet, node));
+    let [masters, slaves] = [source, target].map(|side| nodes(side, node));
     let middle = |nodes: &[NodeId]| mesh.points_of(nodes).sum::<glam::DVec3>() / nodes.len().max(1) as f64;
     let candidates = match pair.transform.and_then(|transform| transform.matrix()) {
         Some(numbers) => maps(&numbers),
         None => vec![DAffine3::from_translation(middle(&slaves) - middle(&masters))],
     };
-    let name = |sheet: &Sheet| sheet.common.name.as_deref().unwrap_or("").to_owned();
+    let name = |side: PeriodicSheet<'_>| side.sheet.common.name.as_deref().unwrap_or("").to_owned();
     let Some((map, pairs)) = matched(mesh, &masters, &slaves, &candidates) else {
         let transform = pair.transform.map_or("a shift".to_owned(), |t| format!("transform {}", t.id));
         let (masters, slaves) = (masters.len(), slaves.len());
@@ -78,14 +88,14 @@ pub fn periodic_records(
     Ok(records.into_iter().map(record).collect())
 }
 
-fn faces(sheet: &Sheet, node: &dyn Fn(u32) -> Option<NodeId>) -> Vec<Vec<NodeId>> {
-    let SheetBody::Faces(runs) = &sheet.body else { return Vec::new() };
-    let corners = |face: &[u32]| face.iter().map(|&index| node(index)).collect::<Option<Vec<_>>>();
+fn faces(side: PeriodicSheet<'_>, node: &dyn Fn(&MeshModel, u32) -> Option<NodeId>) -> Vec<Vec<NodeId>> {
+    let SheetBody::Faces(runs) = &side.sheet.body else { return Vec::new() };
+    let corners = |face: &[u32]| face.iter().map(|&index| node(side.model, index)).collect::<Option<Vec<_>>>();
     runs.iter().flat_map(|run| run.faces().filter_map(corners)).collect()
 }
 
-fn nodes(sheet: &Sheet, node: &dyn Fn(u32) -> Option<NodeId>) -> Vec<NodeId> {
-    let mut nodes: Vec<NodeId> = faces(sheet, node).into_iter().flatten().collect();
+fn nodes(side: PeriodicSheet<'_>, node: &dyn Fn(&MeshModel, u32) -> Option<NodeId>) -> Vec<NodeId> {
+    let mut nodes: Vec<NodeId> = faces(side, node).into_iter().flatten().collect();
     nodes.sort_unstable();
     nodes.dedup();
     nodes

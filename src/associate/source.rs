@@ -38,12 +38,13 @@ pub enum TieError {
 
 /// Ties a mesh to its CAD: by the linkage file where there is one, else by entity tags where they are this CAD's, else by geometry.
 ///
-/// `choose` may strike out claims before they are held against the CAD. `max_offset` is that of [`associate`].
+/// `linkage` is the linkage file with the file of the mesh, which it may name. `choose` may strike out claims before they are held against
+/// the CAD. `max_offset` is that of [`associate`].
 ///
 /// # Errors
 /// [`TieError`]; where tags do not hold and geometry does not tell either, what is wrong with the tags.
 pub fn tie(
-    linkage: Option<&Path>,
+    linkage: Option<[&Path; 2]>,
     mesh: &Mesh,
     boundary: &Boundary,
     model: &Model,
@@ -57,8 +58,8 @@ pub fn tie(
         association.notes.append(&mut claims.notes);
         Ok::<_, AssociateError>(Tied { claims, association, inference, source })
     };
-    if let Some(path) = linkage {
-        let claims = read_linkage(path, mesh, boundary, model)?;
+    if let Some([path, mesh_file]) = linkage {
+        let claims = read_linkage(path, mesh_file, mesh, boundary, model)?;
         let trusted = claims.trusted;
         let mut tied = held(claims, None, format!("linkage file {}", path.display()))?;
         if !trusted {

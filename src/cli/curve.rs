@@ -4,12 +4,12 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use cad::ReadOptions;
 use clap::Args;
 
 use super::form::Form;
 use super::keeper::Keeper;
 use super::progress::Teller;
+use super::reading::Reading;
 use super::trace::Trace;
 use super::{DONE, Failure, GIVEN_UP, NOT_CERTIFIED, STOPPED, print, write_json};
 use crate::associate::Choice;
@@ -48,9 +48,8 @@ pub(super) struct Options {
     /// Write the report as JSON too
     #[arg(long, value_name = "R.json")]
     report: Option<PathBuf>,
-    /// Multiply the CAD by this factor, or `auto` to find the one between units that fits
-    #[arg(long, value_name = "F|auto", default_value = "1", value_parser = scale)]
-    cad_scale: Scale,
+    #[command(flatten)]
+    reading: Reading,
     /// How far a linear node may be from its CAD entity; share of the mesh's box
     #[arg(long, value_name = "SHARE", default_value_t = 1e-3, value_parser = positive)]
     max_offset: f64,
@@ -90,9 +89,6 @@ pub(super) struct Options {
     keep_invalid: bool,
     #[command(flatten)]
     form: Form,
-    /// Seconds after which reading the CAD is given up
-    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = positive)]
-    cad_timeout: f64,
     /// Seconds after which smoothing ends; what is there by then is certified and written
     #[arg(long, value_name = "S", value_parser = positive)]
     time_limit: Option<f64>,
@@ -110,10 +106,6 @@ pub(super) struct Options {
     quiet: bool,
 }
 
-/// The factor of `--cad-scale`; `None` is `auto`.
-#[derive(Clone, Copy, Debug)]
-struct Scale(Option<f64>);
-
 /// The number of `--curve-layers`; `None` is `auto`.
 #[derive(Clone, Copy, Debug)]
 struct Layers(Option<NonZeroUsize>);
@@ -122,10 +114,6 @@ fn order(text: &str) -> Result<Order, String> {
     let wrong = || format!("{text:?} is not an order: give 2, 3 or 4");
     let order = text.trim_start_matches(['P', 'p']).parse::<usize>().ok().and_then(|p| Order::new(p).ok());
     order.filter(|&order| order > Order::LINEAR).ok_or_else(wrong)
-}
-
-fn scale(text: &str) -> Result<Scale, String> {
-    if text == "auto" { Ok(Scale(None)) } else { positive(text).map(|factor| Scale(Some(factor))) }
 }
 
 /// A finite number above 0.
@@ -172,8 +160,8 @@ impl Options {
             freeze_linear: self.freeze_linear,
             freeze_walls: self.freeze_walls,
             curve_layers: self.curve_layers.0,
-            cad_scale: self.cad_scale.0,
-            reading: ReadOptions { timeout: Duration::from_secs_f64(self.cad_timeout), ..ReadOptions::default() },
+            cad_scale: self.reading.scale(),
+            reading: self.reading.options(),
             smoothing: smooth::Settings {
                 threshold: self.threshold,
                 alpha: self.alpha,

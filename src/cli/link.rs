@@ -6,9 +6,12 @@ use cad::{Model, ReadOptions};
 use clap::Args;
 
 use super::curve::positive;
+use super::reading::Reading;
 use super::{DONE, Failure, print, write_json};
-use crate::associate::{self, Boundary, Claims, Tolerance, associate, infer};
+use crate::associate::{self, AssociateError, Boundary, Claims, Inference, Tolerance, associate, infer};
 use crate::formats;
+use crate::mesh::Mesh;
+use crate::validate::read_linear;
 
 /// A point may be this far from what its tag names; share of the mesh's box.
 const MAX_OFFSET: f64 = 1e-3;
@@ -27,6 +30,8 @@ pub(super) struct Options {
     /// How far a node may be from its CAD entity [default: 1e-5 of the mesh's box, and a tenth of the shortest edge at the node]
     #[arg(long, value_name = "T", value_parser = positive)]
     tolerance: Option<f64>,
+    #[command(flatten)]
+    reading: Reading,
     /// Take no notice of the mesh's entity tags
     #[arg(long)]
     ignore_tags: bool,
@@ -38,48 +43,80 @@ pub(super) struct Options {
 /// A mesh that is not on the CAD.
 #[derive(Debug, thiserror::Error)]
 #[error(
-    "{mesh} and {cad}: no face of the mesh lies on the CAD within tolerance; the mesh's box is {size:.6} across, the CAD's {cad_size:.6}: \
-     are both in one unit and place? If the mesh is off its CAD, raise --tolerance"
+    "{mesh} and {cad}: no face of the mesh lies on the CAD within tolerance; the mesh's box is {size:.6} across, the CAD's {cad_size:.6}: {hint}"
 )]
 struct Nothing {
     mesh: String,
     cad: String,
     size: f64,
     cad_size: f64,
+    hint: String,
 }
 
 /// Ties a mesh to its CAD and writes the linkage.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     formats::check_folder(&options.output)?;
-    let mesh = formats::read(&options.mesh)?;
-    let model = Model::read(&options.cad, &ReadOptions::default())?;
+    let mesh = read_linear(&options.mesh)?;
     let boundary = Boundary::new(&mesh);
-    let tags = Claims::by_tags(&mesh, &boundary, &model);
-    let tags_hold = !options.ignore_tags && associate(&mesh, &boundary, &model, &tags, MAX_OFFSET).is_ok();
-    let (claims, inference, source) = if tags_hold {
-        (tags, None, "the mesh's entity tags")
-    } else {
-        let tolerance = options.tolerance.map_or_else(|| Tolerance::of(&mesh), Tolerance::fixed);
-        let mut inference = infer(&mesh, &boundary, &model, &tolerance);
-        (std::mem::take(&mut inference.claims), Some(inference), "geometry")
-    };
+    let reading = options.reading.options();
+    let mut model = Model::read(&options.cad, &reading)?;
+    let mut tied = tie(options, &mesh, &boundary, &model);
+    if let (true, None, Some(scale)) = (tied.claims.sheets.is_empty(), options.reading.scale(), tied.factor) {
+        model = Model::read(&options.cad, &ReadOptions { scale, ..reading })?;
+        tied = tie(options, &mesh, &boundary, &model);
+    }
+    let Tied { claims, inference, source, factor } = tied;
     if claims.sheets.is_empty() {
+        let hint = factor.map_or_else(
+            || "are both in one unit and place? If the mesh is off its CAD, raise --tolerance".to_owned(),
+            |factor| format!("if the CAD is in another unit, give --cad-scale {factor} (or --cad-scale auto)"),
+        );
         return Err(Box::new(Nothing {
             mesh: options.mesh.display().to_string(),
             cad: options.cad.display().to_string(),
-            size: cad::Aabb::of_points(mesh.points.iter().copied()).diagonal(),
+            size: size_of(&mesh),
             cad_size: model.diagonal(),
+            hint,
         }));
     }
-    let document = associate::document(&claims, &mesh, &boundary, &model, &options.mesh)?;
+    let written = associate::document(&claims, &mesh, &boundary, &model, &options.mesh)?;
     let mut text = Vec::new();
-    linkage_schema::write(&document, &mut text)?;
+    linkage_schema::write(&written.document, &mut text)?;
     formats::write_bytes(&options.output, &text)?;
     let mut summary = associate::summary(source, &mesh, &boundary, &model, &claims, inference.as_ref());
-    summary.notes.extend(mesh.notes.iter().cloned().chain(model.losses()));
+    summary.notes.extend(mesh.notes.iter().cloned().chain(model.losses()).chain(written.notes));
     if let Some(path) = &options.report {
         write_json(path, &summary)?;
     }
     print(&format!("{summary}\nwritten: {}", options.output.display()))?;
     Ok(DONE)
+}
+
+/// What lies on what.
+struct Tied {
+    claims: Claims,
+    inference: Option<Inference>,
+    source: &'static str,
+    /// The factor between units by which CAD and mesh differ.
+    factor: Option<f64>,
+}
+
+/// By the mesh's tags where they hold, else by geometry.
+fn tie(options: &Options, mesh: &Mesh, boundary: &Boundary, model: &Model) -> Tied {
+    let mut factor = cad::unit_factor(size_of(mesh), model.diagonal());
+    if !options.ignore_tags {
+        let claims = Claims::by_tags(mesh, boundary, model);
+        match associate(mesh, boundary, model, &claims, MAX_OFFSET) {
+            Ok(_) => return Tied { claims, inference: None, source: "the mesh's entity tags", factor: None },
+            Err(AssociateError::Scale { factor: own, .. }) => factor = Some(own),
+            Err(_) => {}
+        }
+    }
+    let tolerance = options.tolerance.map_or_else(|| Tolerance::of(mesh), Tolerance::fixed);
+    let mut inference = infer(mesh, boundary, model, &tolerance);
+    Tied { claims: std::mem::take(&mut inference.claims), inference: Some(inference), source: "geometry", factor }
+}
+
+fn size_of(mesh: &Mesh) -> f64 {
+    cad::Aabb::of_points(mesh.points.iter().copied()).diagonal()
 }

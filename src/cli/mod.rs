@@ -15,6 +15,7 @@ mod link;
 mod points;
 mod progress;
 mod project;
+mod reading;
 mod trace;
 mod validate;
 

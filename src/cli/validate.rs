@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::curve::positive;
+use super::reading::Reading;
 use super::{DONE, FINDINGS, Failure, print};
 use crate::validate::{self, Job};
 
@@ -22,6 +23,8 @@ pub(super) struct Options {
     /// How far a linked point may be from its CAD entity [default: 1e-5 of the mesh's box]
     #[arg(long, value_name = "T", value_parser = positive)]
     tolerance: Option<f64>,
+    #[command(flatten)]
+    reading: Reading,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -37,6 +40,8 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
         mesh: options.mesh.clone(),
         cad: options.cad.clone(),
         tolerance: options.tolerance,
+        cad_scale: options.reading.scale(),
+        reading: options.reading.options(),
     })?;
     if options.json {
         print(&serde_json::to_string_pretty(&validation)?)?;

@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use glam::DVec3;
+use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::error::Fault;
@@ -170,17 +171,24 @@ pub(super) fn node_of(count: usize, number: i64, base: i64, by: u64) -> Result<N
     }
 }
 
+/// Nodes that one task looks at.
+const CHUNK: usize = 1 << 16;
+/// The box of nothing.
+const EMPTY: [DVec3; 2] = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+
 /// Gives the entities their boxes.
 fn bounds(mesh: &mut Mesh) {
     let places: FxHashMap<EntityKey, usize> = mesh.entities.iter().enumerate().map(|(n, e)| (e.key, n)).collect();
-    let mut boxes = vec![[DVec3::INFINITY, DVec3::NEG_INFINITY]; mesh.entities.len()];
+    let mut boxes = vec![EMPTY; mesh.entities.len()];
     for block in &mesh.blocks {
         let Some(&place) = places.get(&block.entity) else { continue };
-        let [lower, upper] = &mut boxes[place];
-        for node in &block.nodes {
-            let at = mesh.points[node.index()];
-            (*lower, *upper) = (lower.min(at), upper.max(at));
-        }
+        let points = &mesh.points;
+        let of = |nodes: &[NodeId]| {
+            nodes.iter().map(|n| points[n.index()]).fold(EMPTY, |[lower, upper], at| [lower.min(at), upper.max(at)])
+        };
+        let join = |[a, b]: [DVec3; 2], [c, d]: [DVec3; 2]| [a.min(c), b.max(d)];
+        let own = block.nodes.par_chunks(CHUNK).map(of).reduce(|| EMPTY, join);
+        boxes[place] = join(boxes[place], own);
     }
     for (entity, [lower, upper]) in mesh.entities.iter_mut().zip(boxes) {
         entity.bounds = [lower.to_array(), upper.to_array()];

@@ -27,7 +27,8 @@ pub struct Coverage {
 /// Counts, and finds patches that are linked in part.
 pub(super) fn check(linked: &LinkedMesh<'_>, models: &[&ModelLinks<'_>], findings: &mut Findings) -> Vec<Coverage> {
     let mut states: FxHashMap<usize, (bool, Origin)> = FxHashMap::default();
-    for sheet in models.iter().flat_map(|links| &links.sheets) {
+    for (links, sheet) in models.iter().flat_map(|links| links.sheets.iter().map(move |sheet| (links, sheet))) {
+        let linked = linked.within(links.model);
         for link in &sheet.faces {
             let has_geometry = link.target.is_some();
             for face in link.run.faces().filter_map(|face| linked.face(face)) {

@@ -40,22 +40,50 @@ pub(super) fn same_scale(
     geometry: &Geometry,
     findings: &mut Findings,
 ) -> bool {
-    let mut claims = Claims::default();
-    for link in models.iter().flat_map(|links| &links.sheets).flat_map(|sheet| &sheet.faces) {
-        let items: Vec<usize> = link.run.faces().filter_map(|face| linked.face(face)).collect();
-        let entities = geometry.of(link.target.as_deref());
-        if !items.is_empty() && !entities.is_empty() {
-            claims.sheets.push(Claimed { label: String::new(), items, entities });
-        }
-    }
-    let (Some(first), false) = (models.first(), claims.sheets.is_empty()) else { return true };
-    match check_boxes(linked.mesh, linked.boundary, model, &claims) {
-        Err(error @ (AssociateError::Scale { .. } | AssociateError::Place { .. })) => {
+    match (models.first(), misfit(linked, models, model, geometry)) {
+        (Some(first), Some(error)) => {
             findings.push(Code::OtherScale, first.model.origin, || error.to_string());
             false
         }
         _ => true,
     }
+}
+
+/// The factor between units by which the CAD must be multiplied to fit the mesh, if that is what sets them apart.
+pub(super) fn unit_factor(
+    linked: &LinkedMesh<'_>,
+    models: &[&ModelLinks<'_>],
+    model: &Model,
+    geometry: &Geometry,
+) -> Option<f64> {
+    match misfit(linked, models, model, geometry)? {
+        AssociateError::Scale { factor, .. } => Some(factor),
+        _ => None,
+    }
+}
+
+/// How the boxes of what is linked, in mesh and CAD, differ in size or place.
+fn misfit(
+    linked: &LinkedMesh<'_>,
+    models: &[&ModelLinks<'_>],
+    model: &Model,
+    geometry: &Geometry,
+) -> Option<AssociateError> {
+    let mut claims = Claims::default();
+    for links in models {
+        let linked = linked.within(links.model);
+        for link in links.sheets.iter().flat_map(|sheet| &sheet.faces) {
+            let items: Vec<usize> = link.run.faces().filter_map(|face| linked.face(face)).collect();
+            let entities = geometry.of(link.target.as_deref());
+            if !items.is_empty() && !entities.is_empty() {
+                claims.sheets.push(Claimed { label: String::new(), items, entities });
+            }
+        }
+    }
+    let error =
+        (!claims.sheets.is_empty()).then(|| check_boxes(linked.mesh, linked.boundary, model, &claims).err())??;
+    matches!(error, AssociateError::Scale { .. } | AssociateError::Size { .. } | AssociateError::Place { .. })
+        .then_some(error)
 }
 
 /// Measures all sheets, strings and points.
@@ -67,9 +95,10 @@ pub(super) fn check(
     tolerance: f64,
     findings: &mut Findings,
 ) -> [Vec<Measured>; 3] {
-    let ruler = Ruler { linked, model, geometry, tolerance };
     let [mut sheets, mut strings, mut points]: [Vec<Measured>; 3] = Default::default();
     for links in models {
+        let linked = &linked.within(links.model);
+        let ruler = Ruler { linked, model, geometry, tolerance };
         for sheet in &links.sheets {
             for link in &sheet.faces {
                 let nodes =

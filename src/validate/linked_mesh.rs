@@ -1,9 +1,8 @@
 //! A mesh as a linkage file speaks of it: by numbers, which may be off by one or another mesh's.
 
-use linkage_schema::{Code, Findings, ModelLinks};
-use rustc_hash::FxHashMap;
+use linkage_schema::{Code, Findings, MeshModel, ModelLinks};
 
-use crate::associate::{Boundary, Side};
+use crate::associate::{Boundary, Numbering, Part, Side};
 use crate::mesh::{Mesh, NodeId};
 
 /// Less than this share of the linked faces in the mesh: it is another mesh, or the numbers count from elsewhere.
@@ -11,14 +10,15 @@ const OTHER: f64 = 0.5;
 /// At least this share of them in it after all numbers are moved by one: that is what is wrong.
 const MOVED: f64 = 0.9;
 
-/// A mesh, and what the numbers of a linkage file mean in it.
+/// A mesh, and what the numbers of one model of a linkage file mean in it.
+#[derive(Clone, Copy)]
 pub(super) struct LinkedMesh<'a> {
     pub(super) mesh: &'a Mesh,
     pub(super) boundary: &'a Boundary,
     pub(super) sides: &'a [Side],
-    /// The mesh's largest node number.
-    pub(super) last: u64,
-    numbers: FxHashMap<u64, NodeId>,
+    numbering: &'a Numbering<'a>,
+    /// The zone whose points the model counts.
+    part: Part,
     /// What is added to the file's numbers, where they count from another base.
     shift: i64,
 }
@@ -29,13 +29,11 @@ impl<'a> LinkedMesh<'a> {
         mesh: &'a Mesh,
         boundary: &'a Boundary,
         sides: &'a [Side],
+        numbering: &'a Numbering<'a>,
         models: &[&ModelLinks<'_>],
         findings: &mut Findings,
     ) -> Option<LinkedMesh<'a>> {
-        let number = |(place, &tag): (usize, &u64)| Some((tag, NodeId::new(place).ok()?));
-        let numbers: FxHashMap<u64, NodeId> = mesh.node_tags.iter().enumerate().filter_map(number).collect();
-        let last = mesh.node_tags.iter().copied().max().unwrap_or(0);
-        let mut linked = LinkedMesh { mesh, boundary, sides, last, numbers, shift: 0 };
+        let mut linked = LinkedMesh { mesh, boundary, sides, numbering, part: Part::Whole, shift: 0 };
         let Some(first) = models.first() else { return Some(linked) };
         let share = linked.share(models, 0);
         if share >= OTHER {
@@ -53,8 +51,9 @@ impl<'a> LinkedMesh<'a> {
         }
         findings.push(Code::OtherMesh, first.model.origin, || {
             format!(
-                "of the linked faces only {:.0} % are boundary faces of the mesh, whose node numbers go up to {last}",
-                100.0 * share
+                "of the linked faces only {:.0} % are boundary faces of the mesh, whose node numbers go up to {}",
+                100.0 * share,
+                linked.within(first.model).last()
             )
         });
         None
@@ -63,26 +62,40 @@ impl<'a> LinkedMesh<'a> {
     /// The share of linked faces, or of linked edges where there are no faces, that the boundary has when all indices are shifted; 1 where
     /// nothing is linked.
     fn share(&self, models: &[&ModelLinks<'_>], shift: i64) -> f64 {
-        let runs = || models.iter().flat_map(|links| &links.sheets).flat_map(|sheet| &sheet.faces);
         let (mut all, mut found) = (0_usize, 0_usize);
-        for face in runs().flat_map(|link| link.run.faces()) {
-            all += 1;
-            found += usize::from(self.face_shifted(face, shift).is_some());
-        }
-        if all == 0 {
-            let runs = models.iter().flat_map(|links| &links.strings).flat_map(|string| &string.edges);
-            for edge in runs.flat_map(|link| link.run.edges()) {
+        for links in models {
+            let own = self.within(links.model);
+            for face in links.sheets.iter().flat_map(|sheet| &sheet.faces).flat_map(|link| link.run.faces()) {
                 all += 1;
-                let ends = edge.map(|index| self.node_shifted(index, shift));
+                found += usize::from(own.face_shifted(face, shift).is_some());
+            }
+        }
+        if all > 0 {
+            return found as f64 / all as f64;
+        }
+        for links in models {
+            let own = self.within(links.model);
+            for edge in links.strings.iter().flat_map(|string| &string.edges).flat_map(|link| link.run.edges()) {
+                all += 1;
+                let ends = edge.map(|index| own.node_shifted(index, shift));
                 found += usize::from(matches!(ends, [Some(a), Some(b)] if self.boundary.edge([a, b]).is_some()));
             }
         }
         if all == 0 { 1.0 } else { found as f64 / all as f64 }
     }
 
+    /// The same mesh as another model counts it; the models of unknown zones are left out before.
+    pub(super) fn within(self, model: &MeshModel) -> LinkedMesh<'a> {
+        LinkedMesh { part: self.numbering.part(&model.reference).unwrap_or_default(), ..self }
+    }
+
+    /// The largest number of a node.
+    pub(super) fn last(&self) -> u64 {
+        self.numbering.last(self.part)
+    }
+
     fn node_shifted(&self, index: u32, shift: i64) -> Option<NodeId> {
-        let number = u64::try_from(i64::from(index) + shift).ok()?;
-        self.numbers.get(&number).copied()
+        self.numbering.node(self.part, u64::try_from(i64::from(index) + shift).ok()?)
     }
 
     fn face_shifted(&self, face: &[u32], shift: i64) -> Option<usize> {
@@ -118,6 +131,6 @@ impl<'a> LinkedMesh<'a> {
 
     /// The file's number of a node, in messages.
     pub(super) fn tag(&self, node: NodeId) -> u64 {
-        self.mesh.node_tags[node.index()]
+        self.numbering.index(self.part, node).unwrap_or_else(|| self.mesh.node_tags[node.index()])
     }
 }

@@ -1,6 +1,6 @@
 //! Faces, edges and points of the file that the mesh does not have, or not on its boundary.
 
-use linkage_schema::{Code, Findings, ModelLinks, Origin, SheetLinks, StringLinks};
+use linkage_schema::{Code, Encoding, Findings, ModelLinks, Origin, PointRun, SheetLinks, StringLinks, VertexRef};
 use rustc_hash::FxHashSet;
 
 use super::called;
@@ -10,33 +10,55 @@ use crate::mesh::NodeId;
 
 pub(super) fn check(linked: &LinkedMesh<'_>, models: &[&ModelLinks<'_>], findings: &mut Findings) {
     let mut inner = None;
-    let linked_faces: FxHashSet<usize> = models
-        .iter()
-        .flat_map(|links| &links.sheets)
-        .flat_map(|sheet| &sheet.faces)
-        .flat_map(|link| link.run.faces().filter_map(|face| linked.face(face)))
-        .collect();
+    let mut linked_faces: FxHashSet<usize> = FxHashSet::default();
     for links in models {
+        let linked = linked.within(links.model);
+        let runs = links.sheets.iter().flat_map(|sheet| &sheet.faces).map(|link| link.run);
+        linked_faces.extend(runs.flat_map(|run| run.faces()).filter_map(|face| linked.face(face)));
+    }
+    for links in models {
+        let linked = &linked.within(links.model);
         links.sheets.iter().for_each(|sheet| faces(linked, sheet, &mut inner, findings));
         links.strings.iter().for_each(|string| edges(linked, string, &linked_faces, findings));
         for point in &links.points {
-            beyond(linked, &point.run.indices, "MeshPointReference", point.run.origin, findings);
-            points(linked, &point.run.indices, point.run.origin, findings);
+            beyond(linked, (&point.run.indices, point.run.encoding), "MeshPointReference", point.run.origin, findings);
+            points(linked, point.run, findings);
         }
         names(linked, links, findings);
+        vertices(linked, links, findings);
+    }
+}
+
+/// Parameter vertices of points that the mesh does not have, where no faces or edges beside them tell.
+fn vertices(linked: &LinkedMesh<'_>, links: &ModelLinks<'_>, findings: &mut Findings) {
+    let sheets = links.sheets.iter().filter(|sheet| sheet.faces.is_empty()).flat_map(SheetLinks::parameters);
+    let strings = links.strings.iter().filter(|string| string.edges.is_empty()).flat_map(StringLinks::parameters);
+    for vertex in sheets.chain(strings).chain(&links.model.parameters) {
+        let VertexRef::Index(index) = vertex.vertex else { continue };
+        if linked.node(index).is_none() {
+            findings.push(Code::IndexBeyondMesh, vertex.origin, || {
+                format!("ParamVertex is of point {index}; the mesh's go up to {}", linked.last())
+            });
+        }
     }
 }
 
 /// Indices that the mesh does not have.
-fn beyond(linked: &LinkedMesh<'_>, indices: &[u32], who: &str, origin: Origin, findings: &mut Findings) {
+fn beyond(
+    linked: &LinkedMesh<'_>,
+    (indices, encoding): (&[u32], Encoding),
+    who: &str,
+    origin: Origin,
+    findings: &mut Findings,
+) {
     // Zeros are found by reading.
-    let mut missing = indices.iter().filter(|&&index| index > 0 && linked.node(index).is_none());
-    if let Some(first) = missing.next() {
-        findings.push(Code::IndexBeyondMesh, origin, || {
+    let mut missing = indices.iter().enumerate().filter(|&(_, &index)| index > 0 && linked.node(index).is_none());
+    if let Some((word, first)) = missing.next() {
+        findings.push_word(Code::IndexBeyondMesh, origin, encoding.word(word), || {
             let count = 1 + missing.count();
             format!(
                 "{who} has {count} indices without a node, the first is {first}; the mesh's go up to {}",
-                linked.last
+                linked.last()
             )
         });
     }
@@ -46,25 +68,25 @@ fn faces(linked: &LinkedMesh<'_>, sheet: &SheetLinks<'_>, inner: &mut Option<Inn
     let who = called("MeshSheet", sheet.name());
     for link in &sheet.faces {
         let origin = link.run.origin;
-        beyond(linked, &link.run.indices, &who, origin, findings);
-        let (mut nowhere, mut inside): (Vec<&[u32]>, Vec<&[u32]>) = Default::default();
-        for face in link.run.faces() {
+        beyond(linked, (&link.run.indices, link.run.encoding), &who, origin, findings);
+        let (mut nowhere, mut inside): (Vec<_>, Vec<_>) = Default::default();
+        for (number, face) in link.run.faces().enumerate() {
             let nodes: Option<Vec<NodeId>> = face.iter().map(|&index| linked.node(index)).collect();
             let Some(nodes) = nodes else { continue };
             match linked.face(face) {
-                Some(found) if linked.sides[found].cells > 1 => inside.push(face),
+                Some(found) if linked.sides[found].cells > 1 => inside.push((number, face)),
                 Some(_) => {}
-                None if inner.get_or_insert_with(|| Inner::new(linked)).has(&nodes) => inside.push(face),
-                None => nowhere.push(face),
+                None if inner.get_or_insert_with(|| Inner::new(linked)).has(&nodes) => inside.push((number, face)),
+                None => nowhere.push((number, face)),
             }
         }
-        if let Some(first) = nowhere.first() {
-            findings.push(Code::NotInMesh, origin, || {
+        if let Some((number, first)) = nowhere.first() {
+            findings.push_word(Code::NotInMesh, origin, link.run.encoding.word(number * first.len()), || {
                 format!("{who} has {} faces that the mesh does not have, the first is {first:?}", nowhere.len())
             });
         }
-        if let Some(first) = inside.first() {
-            findings.push(Code::InteriorFace, origin, || {
+        if let Some((number, first)) = inside.first() {
+            findings.push_word(Code::InteriorFace, origin, link.run.encoding.word(number * first.len()), || {
                 format!("{who} has {} faces inside the volume, the first is {first:?}", inside.len())
             });
         }
@@ -75,22 +97,25 @@ fn edges(linked: &LinkedMesh<'_>, string: &StringLinks<'_>, faces: &FxHashSet<us
     let who = called("MeshString", string.name());
     let (mut all, mut bounding) = (0, 0);
     for link in &string.edges {
-        beyond(linked, &link.run.indices, &who, link.run.origin, findings);
-        let mut nowhere: Vec<[u32; 2]> = Vec::new();
-        for ends in link.run.edges() {
+        beyond(linked, (&link.run.indices, link.run.encoding), &who, link.run.origin, findings);
+        let mut nowhere: Vec<(usize, [u32; 2])> = Vec::new();
+        for (number, ends) in link.run.edges().enumerate() {
             match linked.edge(ends) {
                 Some(edge) => {
                     all += 1;
                     bounding += usize::from(linked.boundary.edge_faces[edge].iter().any(|face| faces.contains(face)));
                 }
-                None if ends.iter().all(|&index| linked.node(index).is_some()) => nowhere.push(ends),
+                None if ends.iter().all(|&index| linked.node(index).is_some()) => nowhere.push((number, ends)),
                 None => {}
             }
         }
-        if let Some(first) = nowhere.first() {
-            findings.push(Code::EdgeNotInMesh, link.run.origin, || {
-                format!("{who} has {} edges that no face of the mesh has, the first is {first:?}", nowhere.len())
-            });
+        if let Some((number, first)) = nowhere.first() {
+            findings.push_word(
+                Code::EdgeNotInMesh,
+                link.run.origin,
+                link.run.encoding.word(number * first.len()),
+                || format!("{who} has {} edges that no face of the mesh has, the first is {first:?}", nowhere.len()),
+            );
         }
     }
     if bounding < all {
@@ -100,11 +125,13 @@ fn edges(linked: &LinkedMesh<'_>, string: &StringLinks<'_>, faces: &FxHashSet<us
     }
 }
 
-fn points(linked: &LinkedMesh<'_>, indices: &[u32], origin: Origin, findings: &mut Findings) {
+fn points(linked: &LinkedMesh<'_>, run: &PointRun, findings: &mut Findings) {
     let on_boundary: FxHashSet<NodeId> = linked.boundary.corners.iter().flatten().copied().collect();
-    let stray = |index: &&u32| linked.node(**index).is_some_and(|node| !on_boundary.contains(&node));
-    if let Some(first) = indices.iter().find(stray) {
-        findings.push(Code::StrayPoint, origin, || format!("MeshPointReference has point {first}, inside the volume"));
+    let stray = |index: &u32| linked.node(*index).is_some_and(|node| !on_boundary.contains(&node));
+    if let Some((word, first)) = run.indices.iter().enumerate().find(|(_, index)| stray(index)) {
+        findings.push_word(Code::StrayPoint, run.origin, run.encoding.word(word), || {
+            format!("MeshPointReference has point {first}, inside the volume")
+        });
     }
 }
 

@@ -27,7 +27,7 @@ use cad::{Aabb, Model, ReadOptions};
 use linkage_schema::{Code, Findings, ModelLinks, Position, ReadError, Resolution, Severity};
 use serde::Serialize;
 
-use crate::associate::{Boundary, ON_CAD, same_file, sides};
+use crate::associate::{Boundary, Numbering, ON_CAD, models_of, sides};
 use crate::formats;
 use crate::mesh::Mesh;
 pub use coverage::Coverage;
@@ -49,6 +49,10 @@ pub struct Job {
     pub cad: Option<PathBuf>,
     /// How far a linked point may be from its CAD entity, in the mesh's unit. Default 1e-5 of the mesh's box.
     pub tolerance: Option<f64>,
+    /// What the CAD is multiplied by; `None` finds the factor between units that fits.
+    pub cad_scale: Option<f64>,
+    /// How the CAD is read.
+    pub reading: ReadOptions,
 }
 
 /// Why nothing could be validated.
@@ -61,7 +65,7 @@ pub enum ValidateError {
     Mesh(#[from] formats::Error),
     #[error(transparent)]
     Cad(#[from] cad::ReadError),
-    #[error("{}: is of order {order}; linkage is held against the linear mesh", mesh.display())]
+    #[error("{}: is of order {order}; linkage speaks of linear meshes: give the one that it was made from", mesh.display())]
     NotLinear { mesh: PathBuf, order: crate::element::Order },
 }
 
@@ -76,6 +80,8 @@ pub struct Validation {
     pub mesh: Option<PathBuf>,
     /// The CAD, if one was given.
     pub cad: Option<PathBuf>,
+    /// What the CAD was multiplied by.
+    pub cad_scale: f64,
     /// Findings, by their place in the file; of each kind the first 200.
     pub findings: Vec<Found>,
     /// How many there were, kept or not.
@@ -126,6 +132,7 @@ impl Validation {
             linkage: job.linkage.clone(),
             mesh: job.mesh.clone(),
             cad: job.cad.clone(),
+            cad_scale: job.cad_scale.unwrap_or(1.0),
             findings: Vec::new(),
             errors: 0,
             warnings: 0,
@@ -173,8 +180,9 @@ impl Found {
 /// [`ValidateError`]: a file that cannot be read. A linkage file that is broken is a finding.
 pub fn validate(job: &Job) -> Result<Validation, ValidateError> {
     let mut validation = Validation::new(job);
-    let mesh = job.mesh.as_deref().map(read_mesh).transpose()?;
-    let model = job.cad.as_deref().map(|path| Model::read(path, &ReadOptions::default())).transpose()?;
+    let mesh = job.mesh.as_deref().map(read_linear).transpose()?;
+    let read = |path: &Path, scale| Model::read(path, &ReadOptions { scale, ..job.reading.clone() });
+    let mut model = job.cad.as_deref().map(|path| read(path, validation.cad_scale)).transpose()?;
     let reading = match linkage_schema::read_path(&job.linkage) {
         Ok(reading) => reading,
         Err(error @ (ReadError::Open { .. } | ReadError::Io { .. })) => return Err(error.into()),
@@ -184,21 +192,31 @@ pub fn validate(job: &Job) -> Result<Validation, ValidateError> {
     let resolution = linkage_schema::resolve(&reading.document);
     findings.append(&resolution.findings);
     let models: Vec<&ModelLinks<'_>> = of_this_mesh(&resolution, job.mesh.as_deref(), &mut findings);
-    alone::check(&models, &mut findings);
+    alone::check(&reading.document, &models, &mut findings);
     let geometry = Geometry::new(&reading.document, &resolution, model.as_ref(), &mut findings);
     let boundary = mesh.as_ref().map(Boundary::new).unwrap_or_default();
     if let Some(mesh) = &mesh {
         let sides = sides(mesh, &boundary);
-        let linked = LinkedMesh::new(mesh, &boundary, &sides, &models, &mut findings);
+        let numbering = Numbering::new(mesh);
+        let models = of_known_zones(&models, &numbering, &mut findings);
+        let linked = LinkedMesh::new(mesh, &boundary, &sides, &numbering, &models, &mut findings);
         if let Some(linked) = linked {
             mesh_links::check(&linked, &models, &mut findings);
             validation.coverage = coverage::check(&linked, &models, &mut findings);
             periodic::check(&linked, &resolution, &mut findings);
+            let fitting = model.as_ref().and_then(|model| distances::unit_factor(&linked, &models, model, &geometry));
+            if let (None, Some(cad), Some(factor)) = (job.cad_scale, &job.cad, fitting) {
+                validation.cad_scale = factor;
+                model = Some(read(cad, factor)?);
+            }
             if let Some(model) = &model {
                 with_cad(job, &linked, &models, model, &geometry, &mut findings, &mut validation);
             }
         }
     }
+    // Without the file, which was there a moment ago, findings stay at their elements.
+    let again = std::fs::File::open(&job.linkage).map(std::io::BufReader::new);
+    again.and_then(|stream| findings.place_words(stream)).unwrap_or_default();
     Ok(validation.close(&findings))
 }
 
@@ -225,7 +243,11 @@ fn with_cad(
     sharp_edges::check(linked, models, model, geometry, job.tolerance, findings);
 }
 
-fn read_mesh(path: &Path) -> Result<Mesh, ValidateError> {
+/// Reads a mesh that linkage can speak of: a linear one.
+///
+/// # Errors
+/// [`ValidateError::Mesh`], [`ValidateError::NotLinear`].
+pub fn read_linear(path: &Path) -> Result<Mesh, ValidateError> {
     let mesh = formats::read(path)?;
     if mesh.order != crate::element::Order::LINEAR {
         return Err(ValidateError::NotLinear { mesh: path.to_owned(), order: mesh.order });
@@ -251,7 +273,7 @@ fn of_this_mesh<'r, 'a>(
 ) -> Vec<&'r ModelLinks<'a>> {
     let all = || resolution.models.iter();
     let Some(path) = mesh else { return all().collect() };
-    let own: Vec<&ModelLinks<'a>> = all().filter(|links| same_file(&links.file.filename, path)).collect();
+    let own = models_of(resolution, path);
     if !own.is_empty() {
         return own;
     }
@@ -261,6 +283,22 @@ fn of_this_mesh<'r, 'a>(
         });
     }
     all().collect()
+}
+
+/// The models of the zones that the mesh file has.
+fn of_known_zones<'r, 'a>(
+    models: &[&'r ModelLinks<'a>],
+    numbering: &Numbering<'_>,
+    findings: &mut Findings,
+) -> Vec<&'r ModelLinks<'a>> {
+    let mut known = Vec::new();
+    for links in models {
+        match numbering.part(&links.model.reference) {
+            Ok(_) => known.push(*links),
+            Err(error) => findings.push(Code::UnknownZone, links.model.origin, || error.to_string()),
+        }
+    }
+    known
 }
 
 /// What people call a container.

@@ -33,6 +33,7 @@ pub(super) fn check(
 ) {
     let mut by_entity: BTreeMap<GeometryId, Vec<Vertex<'_>>> = BTreeMap::new();
     for links in models {
+        let linked = linked.within(links.model);
         let of_sheets = links.sheets.iter().flat_map(|sheet| sheet.parameters());
         let of_strings = links.strings.iter().flat_map(|string| string.parameters());
         for vertex in of_sheets.chain(of_strings).chain(&links.model.parameters) {

@@ -1,11 +1,13 @@
 //! What the file's references mean in the CAD.
 
+use std::cell::RefCell;
+
 use cad::{EntityId, Model};
 use linkage_schema::{Code, Document, Findings, GeometryFile, GeometryId, Resolution, Target};
 use rustc_hash::FxHashMap;
 
 use super::called;
-use crate::associate::same_file;
+use crate::associate::{own_geometry, same_file};
 
 /// Extensions and format names of geometry that OpenCASCADE cannot read.
 const FOREIGN: [&str; 5] = ["nmb", "x_t", "x_b", "prt", "catpart"];
@@ -14,6 +16,8 @@ const FOREIGN: [&str; 5] = ["nmb", "x_t", "x_b", "prt", "catpart"];
 #[derive(Debug, Default)]
 pub(super) struct Geometry {
     entities: FxHashMap<GeometryId, Vec<EntityId>>,
+    /// Those of targets that were asked for: a large group may be asked for often.
+    targets: RefCell<FxHashMap<GeometryId, Vec<EntityId>>>,
 }
 
 impl Geometry {
@@ -25,11 +29,18 @@ impl Geometry {
         findings: &mut Findings,
     ) -> Geometry {
         let mut geometry = Geometry::default();
+        let own = model.map(|model| own_geometry(document, model.path()));
         for file in &document.geometry_files {
             let given = model.is_some_and(|model| same_file(&file.filename, model.path()));
             if let Some(format) = unreadable(file, resolution).filter(|_| !given) {
                 findings.push(Code::UnreadableGeometry, file.origin, || {
                     format!("{:?} is geometry in the format {format}, which OpenCASCADE cannot read", file.filename)
+                });
+                continue;
+            }
+            if own.as_ref().is_some_and(|own| !own.iter().any(|own| std::ptr::eq(*own, file))) {
+                findings.push(Code::UnreadableGeometry, file.origin, || {
+                    format!("{:?} is another CAD file than the one given", file.filename)
                 });
                 continue;
             }
@@ -62,11 +73,16 @@ impl Geometry {
 
     /// The entities of a target; none where it was not found, or not looked for.
     pub(super) fn of(&self, target: Option<&Target<'_>>) -> Vec<EntityId> {
-        let members = target.into_iter().flat_map(|target| &target.entities);
+        let Some(target) = target else { return Vec::new() };
+        if let Some(known) = self.targets.borrow().get(&target.id) {
+            return known.clone();
+        }
+        let members = target.entities.iter();
         let mut all: Vec<EntityId> =
             members.flat_map(|entity| self.entities.get(&entity.id).into_iter().flatten().copied()).collect();
         all.sort_unstable();
         all.dedup();
+        self.targets.borrow_mut().insert(target.id, all.clone());
         all
     }
 

@@ -20,23 +20,24 @@ pub(super) fn check(
     let sheets = || {
         models
             .iter()
-            .flat_map(|links| &links.sheets)
-            .flat_map(|sheet| sheet.faces.iter().map(move |link| (sheet, link)))
+            .flat_map(|links| links.sheets.iter().map(move |sheet| (links, sheet)))
+            .flat_map(|(links, sheet)| sheet.faces.iter().map(move |link| (links, sheet, link)))
     };
-    if sheets().all(|(_, link)| geometry.of(link.target.as_deref()).len() < 2) {
+    if sheets().all(|(_, _, link)| geometry.of(link.target.as_deref()).len() < 2) {
         return;
     }
     let joints = Joints::new(model);
     let tolerance = tolerance.map_or_else(|| Tolerance::of(linked.mesh), Tolerance::fixed);
     let incidence = Incidence::new(linked.mesh, linked.boundary, model, &joints, &tolerance);
     let along = incidence.along(linked.mesh, linked.boundary, model);
-    let held: FxHashSet<usize> = models
-        .iter()
-        .flat_map(|links| &links.strings)
-        .flat_map(|string| &string.edges)
-        .flat_map(|link| link.run.edges().filter_map(|ends| linked.edge(ends)))
-        .collect();
-    for (sheet, link) in sheets() {
+    let mut held: FxHashSet<usize> = FxHashSet::default();
+    for links in models {
+        let linked = linked.within(links.model);
+        let runs = links.strings.iter().flat_map(|string| &string.edges).map(|link| link.run);
+        held.extend(runs.flat_map(|run| run.edges()).filter_map(|ends| linked.edge(ends)));
+    }
+    for (links, sheet, link) in sheets() {
+        let linked = &linked.within(links.model);
         let inside: Vec<FaceId> = geometry
             .of(link.target.as_deref())
             .into_iter()

@@ -20,6 +20,8 @@ struct Told {
     shell: usize,
     outward: bool,
     run: usize,
+    /// The place of its first index in the run.
+    word: Option<usize>,
     corners: Vec<u64>,
 }
 
@@ -35,7 +37,8 @@ pub(super) fn check(
     let joints = Joints::new(model);
     let mut runs: Vec<(Origin, String)> = Vec::new();
     let mut told: Vec<Told> = Vec::new();
-    for sheet in models.iter().flat_map(|links| &links.sheets) {
+    for (links, sheet) in models.iter().flat_map(|links| links.sheets.iter().map(move |sheet| (links, sheet))) {
+        let linked = &linked.within(links.model);
         for link in &sheet.faces {
             let faces: Vec<FaceId> = geometry
                 .of(link.target.as_deref())
@@ -43,31 +46,39 @@ pub(super) fn check(
                 .filter_map(|e| if let EntityId::Face(id) = e { Some(id) } else { None })
                 .collect();
             let Ok(group) = Group::of_faces(model, &faces) else { continue };
-            let mut across: Vec<Vec<u64>> = Vec::new();
-            for face in link.run.faces().filter_map(|face| linked.face(face)) {
+            let mut across: Vec<(usize, Vec<u64>)> = Vec::new();
+            let corners_of = link.run.shape.corners();
+            for (number, face) in link.run.faces().enumerate() {
+                let Some(face) = linked.face(face) else { continue };
                 let corners = || linked.boundary.corners[face].iter().map(|&n| linked.tag(n)).collect();
                 let held = |id: &FaceId| joints.face(*id).and_then(|group| meeting(linked, face, group, tolerance));
                 // On a group, the one of its faces that the mesh face lies on: at a thin edge its middle may be nearer to another.
                 let single = faces.iter().filter_map(held).max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
                 match single.or_else(|| meeting(linked, face, &group, tolerance)) {
-                    Some((_, cosine)) if cosine.abs() < ALONG => across.push(corners()),
+                    Some((_, cosine)) if cosine.abs() < ALONG => across.push((number, corners())),
                     Some((id, cosine)) => told.push(Told {
                         shell: shells[id.index()],
                         outward: cosine > 0.0,
                         run: runs.len(),
+                        word: link.run.encoding.word(number * corners_of),
                         corners: corners(),
                     }),
                     None => {}
                 }
             }
             let who = called("MeshSheet", sheet.name());
-            if let Some(first) = across.first() {
-                findings.push(Code::WrongSide, link.run.origin, || {
-                    format!(
-                        "{} faces of {who} stand across the surface they are linked to, the first is {first:?}",
-                        across.len()
-                    )
-                });
+            if let Some((number, first)) = across.first() {
+                findings.push_word(
+                    Code::WrongSide,
+                    link.run.origin,
+                    link.run.encoding.word(number * corners_of),
+                    || {
+                        format!(
+                            "{} faces of {who} stand across the surface they are linked to, the first is {first:?}",
+                            across.len()
+                        )
+                    },
+                );
             }
             runs.push((link.run.origin, who));
         }
@@ -86,7 +97,7 @@ pub(super) fn check(
     }
     for (run, faces) in wrong {
         let (origin, who) = &runs[run];
-        findings.push(Code::WrongSide, *origin, || {
+        findings.push_word(Code::WrongSide, *origin, faces[0].word, || {
             let first = &faces[0].corners;
             format!(
                 "{} faces of {who} have the volume on the other side of the surface, the first is {first:?}",

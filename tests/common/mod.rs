@@ -14,6 +14,8 @@ macro_rules! args {
 }
 
 pub mod input;
+pub mod linkage;
+pub mod ugrid;
 
 /// The repository.
 pub fn root() -> &'static Path {

@@ -5,21 +5,25 @@ usage: consume.py SAGITTA [CASE:ORDERS...] > table
 
 Curves the cases, writes each result in every format, and gives the files to the readers of readers.py, each in a process of its
 own. Volumes, areas and counts are held against reference.py, which reads the text MSH 2.2 file with no reader's code. Prints the
-table that stands in tests/consumers/README.md; exit code 1 where a reader finds something else than is there.
+table that stands in tests/consumers/README.md; exit code 1 where a reader, not known to be at fault, finds something else than is there.
 """
 import json
+import math
 import os
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 FIXTURES = os.path.join(HERE, "..", "..", "fixtures")
-CASES = ("sphere_shell:234", "cylinder_bl:234", "weeble_hybrid:234")
+CASES = ("sphere_shell:234", "cylinder_bl:234", "weeble_hybrid:234", "periodic/sector:234", "ring:234")
 FORMATS = {"msh41b": ("msh", []), "msh41a": ("msh", ["--ascii"]), "msh22b": ("msh", ["--msh-version", "2.2"]),
            "msh22a": ("msh", ["--msh-version", "2.2", "--ascii"]), "cgns": ("cgns", []), "vtu": ("vtu", []), "vtu_volume": ("vtu", ["--volume-only"])}
 TITLES = {"msh41b": "MSH 4.1", "msh41a": "MSH 4.1 ASCII", "msh22b": "MSH 2.2", "msh22a": "MSH 2.2 ASCII", "cgns": "CGNS", "vtu": "VTU",
           "vtu_volume": "VTU --volume-only"}
+# What a reader is known to read wrong; tests/consumers/README.md has the evidence.
+FAULTY = {("VTK", "cgns", "periodic/sector P4")}
 EXACT = 1e-7  # relative; the readers' quadratures differ
 
 
@@ -62,7 +66,11 @@ def as_vtu(expected):
 
 def consume(sagitta, case, order, folder, results):
     curved = os.path.join(folder, "curved.msh")
-    base, linear = os.path.join(FIXTURES, case, case), os.path.join(folder, "linear.msh")
+    base, linear = os.path.join(folder, "ring"), os.path.join(folder, "linear.msh")
+    if case == "ring":
+        run(sys.executable, __file__, "--ring", base)
+    else:
+        base = os.path.join(FIXTURES, case if "/" in case else f"{case}/{case}")
     run(sys.executable, __file__, "--name-cells", f"{base}.msh", linear)
     run(sagitta, "curve", linear, "--cad", f"{base}.step", "--order", order, "-o", curved, "--quiet")
     files = {}
@@ -77,23 +85,28 @@ def consume(sagitta, case, order, folder, results):
     names = {f"#{tag}": name for (dimension, tag), name in parse(files["msh22a"])[0].items() if dimension == 2}
     patches = ",".join(name for (dimension, _), name in parse(files["msh22a"])[0].items() if dimension == 2)
     environment = {**os.environ, "SAGITTA_ORDER": order, "SAGITTA_NAMES": patches}
-    for reader, (_, formats) in READERS.items():
-        for key in formats:
-            child = [sys.executable, __file__, "--read", reader, files[key]]
-            try:
-                done = subprocess.run(child, capture_output=True, text=True, env=environment, timeout=900)
-                found = json.loads(done.stdout.splitlines()[-1]) if done.stdout.strip() else {"error": f"crashed ({done.returncode})"}
-            except subprocess.TimeoutExpired:
-                found = {"error": "did not end within 900 s"}
-            except json.JSONDecodeError:
-                found = {"error": f"crashed ({done.returncode})"}
-            if "error" in found:
-                verdict = ("refused", found["error"].replace(folder + "/", ""))
-            else:
-                wrong, untold = differences(found, as_vtu(expected) if key.startswith("vtu") else expected, names)
-                verdict = ("wrong", "; ".join(wrong)) if wrong else ("agrees", ", ".join(untold))
-            results.setdefault((reader, key), []).append((f"{case} P{order}", *verdict))
-            print(f"{case} P{order} {reader} {key}: {verdict}", file=sys.stderr)
+    pairs = [(reader, key) for reader, (_, formats) in READERS.items() for key in formats]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        outcomes = pool.map(lambda pair: outcome(pair[0], files[pair[1]], environment), pairs)
+    for (reader, key), found in zip(pairs, outcomes):
+        if "error" in found:
+            verdict = ("refused", found["error"].replace(folder + "/", ""))
+        else:
+            wrong, untold = differences(found, as_vtu(expected) if key.startswith("vtu") else expected, names)
+            verdict = ("wrong", "; ".join(wrong)) if wrong else ("agrees", ", ".join(untold))
+        results.setdefault((reader, key), []).append((f"{case} P{order}", *verdict))
+        print(f"{case} P{order} {reader} {key}: {verdict}", file=sys.stderr)
+
+
+def outcome(reader, path, environment):
+    """What a reader, in a process of its own, says of a file."""
+    try:
+        done = subprocess.run([sys.executable, __file__, "--read", reader, path], capture_output=True, text=True, env=environment, timeout=900)
+        return json.loads(done.stdout.splitlines()[-1]) if done.stdout.strip() else {"error": f"crashed ({done.returncode})"}
+    except subprocess.TimeoutExpired:
+        return {"error": "did not end within 900 s"}
+    except json.JSONDecodeError:
+        return {"error": f"crashed ({done.returncode})"}
 
 
 def read(reader, path):
@@ -125,11 +138,42 @@ def name_cells(path, out):
     os._exit(0)
 
 
+def ring(base):
+    """A quarter of a ring in hexes of even thickness: PyHOPE joins the points of thin layers."""
+    import gmsh
+
+    gmsh.initialize()
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.option.setNumber("Mesh.Binary", 1)
+    occ, mesh = gmsh.model.occ, gmsh.model.mesh
+    occ.addRectangle(1, 0, 0, 1, 1)
+    occ.revolve([(2, 1)], 0, 0, 0, 0, 1, 0, math.pi / 2, numElements=[5], recombine=True)
+    occ.synchronize()
+    for _, curve in gmsh.model.getBoundary([(2, 1)], oriented=False):
+        mesh.setTransfiniteCurve(curve, 4)
+    mesh.setTransfiniteSurface(1)
+    mesh.setRecombine(2, 1)
+    groups = {}
+    for _, face in gmsh.model.getEntities(2):
+        x, _, z = gmsh.model.occ.getCenterOfMass(2, face)
+        is_round = gmsh.model.getType(2, face) == "Cylinder"
+        groups.setdefault(("wall" if math.hypot(x, z) < 1 else "farfield") if is_round else "symmetry", []).append(face)
+    for name, faces in groups.items():
+        gmsh.model.addPhysicalGroup(2, faces, name=name)
+    gmsh.model.addPhysicalGroup(3, [tag for _, tag in gmsh.model.getEntities(3)], name="fluid")
+    mesh.generate(3)
+    gmsh.write(f"{base}.msh")
+    gmsh.write(f"{base}.step")
+    os._exit(0)
+
+
 def main():
     if sys.argv[1] == "--read":
         read(*sys.argv[2:])
     if sys.argv[1] == "--name-cells":
         name_cells(*sys.argv[2:])
+    if sys.argv[1] == "--ring":
+        ring(sys.argv[2])
     sagitta, *cases = sys.argv[1:]
     results = {}
     for case, _, orders in (text.partition(":") for text in cases or CASES):
@@ -137,6 +181,8 @@ def main():
             with tempfile.TemporaryDirectory() as folder:
                 consume(os.path.abspath(sagitta), case, order, folder, results)
     table(results)
+    wrong = {(*pair, what) for pair, verdicts in results.items() for what, verdict, _ in verdicts if verdict == "wrong"}
+    sys.exit(bool(wrong - FAULTY))
 
 
 def table(results):

@@ -68,24 +68,34 @@ def read_mfem(path):
     mesh = mfem.Mesh(path, 1, 1, False)
     shapes = {2: "triangle", 3: "quad", 4: "tet", 5: "hex", 6: "prism", 7: "pyramid"}
     found = {"nodes": mesh.GetNodes().FESpace().GetNDofs() if mesh.GetNodes() else mesh.GetNV(), "cells": {}, "volume": 0.0, "areas": {}, "faces": {}}
+    nodes = mesh.GetNodes()
+    space, values = nodes.FESpace(), nodes.GetDataArray()
     rules = mfem.IntegrationRules(0, mfem.Quadrature1D.GaussLegendre)
 
-    def size(transformation, geometry):
-        rule = rules.Get(geometry, 14)
-        total = 0.0
-        for n in range(rule.GetNPoints()):
-            point = rule.IntPoint(n)
-            transformation.SetIntPoint(point)
-            total += point.weight * transformation.Weight()
-        return total
-
+    by_geometry = {}
     for n in range(mesh.GetNE()):
-        count(found["cells"], shapes[mesh.GetElementGeometry(n)], 1)
-        found["volume"] += size(mesh.GetElementTransformation(n), mesh.GetElementGeometry(n))
+        by_geometry.setdefault(mesh.GetElementGeometry(n), []).append(n)
+    for geometry, numbers in by_geometry.items():
+        # MFEM's shape functions, tabled once a shape, and its numbering of nodes.
+        rule, element = rules.Get(geometry, 14), space.GetFE(numbers[0])
+        points = [rule.IntPoint(n) for n in range(rule.GetNPoints())]
+        slopes = []
+        for point in points:
+            table = mfem.DenseMatrix(element.GetDof(), element.GetDim())
+            element.CalcDShape(point, table)
+            slopes.append(table.GetDataArray().copy())
+        places = np.array([space.GetElementVDofs(n) for n in numbers]).reshape(len(numbers), 3, element.GetDof())
+        count(found["cells"], shapes[geometry], len(numbers))
+        found["volume"] += float(integral(values[places].transpose(0, 2, 1), np.array(slopes), [point.weight for point in points]).sum())
     # A file of cells alone has no patches: what MFEM finds on the outside has no name.
     for n in range(0 if path.endswith(".vtu") else mesh.GetNBE()):
-        name = f"#{mesh.GetBdrAttribute(n)}"
-        found["areas"][name] = found["areas"].get(name, 0.0) + size(mesh.GetBdrElementTransformation(n), mesh.GetBdrElementGeometry(n))
+        name, transformation = f"#{mesh.GetBdrAttribute(n)}", mesh.GetBdrElementTransformation(n)
+        rule, area = rules.Get(mesh.GetBdrElementGeometry(n), 14), 0.0
+        for k in range(rule.GetNPoints()):
+            point = rule.IntPoint(k)
+            transformation.SetIntPoint(point)
+            area += point.weight * transformation.Weight()
+        found["areas"][name] = found["areas"].get(name, 0.0) + area
         count(found["faces"], name, 1)
         count(found["cells"], shapes[mesh.GetBdrElementGeometry(n)], 1)
     return found
@@ -114,35 +124,51 @@ def read_vtk(path):
         grid = reader.GetOutput()
     shapes = {5: "triangle", 9: "quad", 10: "tet", 12: "hex", 13: "prism", 14: "pyramid", 22: "triangle", 24: "tet", 28: "quad", 29: "hex",
               32: "prism", 69: "triangle", 70: "quad", 71: "tet", 72: "hex", 73: "prism"}
-    patch = grid.GetCellData().GetArray("patch")
+    patches = grid.GetCellData().GetArray("patch")
+    patches = None if patches is None else vtk_to_numpy(patches)
     points = vtk_to_numpy(grid.GetPoints().GetData())
+    kinds = vtk_to_numpy(grid.GetCellTypesArray())
+    offsets = vtk_to_numpy(grid.GetCells().GetOffsetsArray())
+    starts, counts = offsets[:-1], np.diff(offsets)
+    connectivity = vtk_to_numpy(grid.GetCells().GetConnectivityArray())
     found = {"nodes": None, "cells": {}, "volume": 0.0, "areas": {}, "faces": {}}
-    for n in range(grid.GetNumberOfCells()):
-        kind = grid.GetCellType(n)
+    for kind, length in {(int(k), int(n)) for k, n in zip(kinds, counts)}:
         if kind not in shapes:
             if kind in (1, 3, 21, 68):
                 continue
             raise ValueError(f"cells of type {kind}")
-        cell, shape = grid.GetCell(n), shapes[kind]
-        count(found["cells"], shape, 1)
-        corners = points[[cell.GetPointId(i) for i in range(cell.GetNumberOfPoints())]]
-        size = 0.0
+        which = np.flatnonzero((kinds == kind) & (counts == length))
+        cell, shape = grid.GetCell(int(which[0])), shapes[kind]
+        count(found["cells"], shape, len(which))
+        slopes, weights = [], []
         for at, weight in gauss(shape):
-            derivatives = [0.0] * (cell.GetCellDimension() * len(corners))
+            derivatives = [0.0] * (cell.GetCellDimension() * length)
             cell.InterpolateDerivs(at, derivatives)
             # Lagrange quadrilaterals and hexes give the derivatives of a point together, the others those by a coordinate.
             together = kind in (70, 72)
-            shape_of = (-1, cell.GetCellDimension()) if together else (cell.GetCellDimension(), -1)
-            table = np.array(derivatives).reshape(shape_of)
-            jacobian = (table.T if together else table) @ corners
-            size += weight * (np.linalg.det(jacobian) if len(jacobian) == 3 else np.linalg.norm(np.cross(*jacobian)))
+            table = np.array(derivatives).reshape((-1, cell.GetCellDimension()) if together else (cell.GetCellDimension(), -1))
+            slopes.append(table if together else table.T)
+            weights.append(weight)
+        sizes = integral(points[connectivity[starts[which][:, None] + np.arange(length)]], np.array(slopes), weights)
         if cell.GetCellDimension() == 3:
-            found["volume"] += abs(size)
-        elif patch:
-            name = f"#{int(patch.GetValue(n))}"
-            found["areas"][name] = found["areas"].get(name, 0.0) + size
-            count(found["faces"], name, 1)
+            found["volume"] += float(np.abs(sizes).sum())
+        elif patches is not None:
+            for patch in np.unique(patches[which]):
+                own, name = patches[which] == patch, f"#{int(patch)}"
+                found["areas"][name] = found["areas"].get(name, 0.0) + float(sizes[own].sum())
+                count(found["faces"], name, own.sum())
     return found
+
+
+def integral(corners, slopes, weights):
+    """Volume or area of each cell: `corners` cell x node x 3, `slopes` point x node x parameter."""
+    sizes = []
+    for part in np.array_split(corners, 1 + corners.size * len(weights) // 4_000_000):
+        jacobians = np.einsum("enc,pnd->epcd", part, slopes, optimize=True)
+        solid = slopes.shape[2] == 3
+        each = np.linalg.det(jacobians) if solid else np.linalg.norm(np.cross(jacobians[..., 0], jacobians[..., 1]), axis=-1)
+        sizes.append(each @ np.array(weights))
+    return np.concatenate(sizes)
 
 
 _rules = {}

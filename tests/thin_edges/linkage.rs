@@ -108,7 +108,7 @@ fn project(section: &Section, folder: &Path) -> (usize, usize) {
     let linear = layer.mesh();
     std::fs::write(&link, linkage(&linear)).unwrap();
     let boundary = Boundary::new(&linear);
-    let claims = associate::read_linkage(&link, &linear, &boundary, &model).unwrap();
+    let claims = associate::read_linkage(&link, "layers.msh".as_ref(), &linear, &boundary, &model).unwrap();
     let association = associate::associate(&linear, &boundary, &model, &claims, 1e-3).unwrap();
     let (mut nodes, mut astray) = (0, 0);
     for (p, (tag, face)) in ORDERS.into_iter().flat_map(|p| [(p, (1, 0)), (p, (2, 1))]) {

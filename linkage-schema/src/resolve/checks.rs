@@ -35,7 +35,10 @@ pub(super) fn model(model: &MeshModel, findings: &mut Findings) {
         let mut points = HashSet::new();
         if let SheetBody::Faces(runs) = &sheet.body {
             for run in runs {
-                run.faces().for_each(|face| degenerate(face, "a face", &sheet.common, run.origin, findings));
+                for (number, face) in run.faces().enumerate() {
+                    let word = run.encoding.word(number * face.len());
+                    degenerate(face, "a face", &sheet.common, (run.origin, word), findings);
+                }
                 if !sheet.parameters.is_empty() {
                     points.extend(run.indices.iter().copied());
                 }
@@ -49,7 +52,10 @@ pub(super) fn model(model: &MeshModel, findings: &mut Findings) {
         let mut points = HashSet::new();
         if let StringBody::Edges(runs) = &string.body {
             for run in runs {
-                run.edges().for_each(|edge| degenerate(&edge, "an edge", &string.common, run.origin, findings));
+                for (number, edge) in run.edges().enumerate() {
+                    let word = run.encoding.word(number * edge.len());
+                    degenerate(&edge, "an edge", &string.common, (run.origin, word), findings);
+                }
                 if !string.parameters.is_empty() {
                     points.extend(run.indices.iter().copied());
                 }
@@ -62,10 +68,17 @@ pub(super) fn model(model: &MeshModel, findings: &mut Findings) {
     vertices(&model.parameters, None, "MeshModelReference", findings);
 }
 
-fn degenerate(cell: &[u32], what: &str, container: &Common, origin: Origin, findings: &mut Findings) {
+/// Looks at a cell, which stands at a word of an element's content.
+fn degenerate(
+    cell: &[u32],
+    what: &str,
+    container: &Common,
+    (origin, word): (Origin, Option<usize>),
+    findings: &mut Findings,
+) {
     let repeated = cell.iter().enumerate().any(|(i, corner)| cell.iter().take(i).any(|before| before == corner));
     if repeated {
-        findings.push(Code::DegenerateCell, origin, || {
+        findings.push_word(Code::DegenerateCell, origin, word, || {
             format!("{what} {cell:?} of {}", called("its container", container))
         });
     }

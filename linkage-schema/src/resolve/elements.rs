@@ -1,7 +1,7 @@
 //! Mesh elements by id and by name, and the pairs that linkages make of them.
 
-use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::collections::{HashMap, HashSet};
 
 use super::tables::{TransformTable, duplicate};
 use crate::{Code, Common, Document, EdgeRun, ElementLinkage, EntityRun, FaceRun, Findings, MeshId, MeshModel};
@@ -146,7 +146,10 @@ pub(super) fn pairs<'a>(
         target: find(&linkage.target),
         transform: linkage.transform.and_then(|id| transforms.get(id)),
     };
-    let pairs: Vec<_> = document.linkages.iter().map(follow).collect();
+    // A linkage that is written again says nothing new, and looking at its sheets again could take long.
+    let mut seen = HashSet::new();
+    let is_new = |one: &&'a ElementLinkage| seen.insert((&one.source, &one.target, one.transform, one.aref));
+    let pairs: Vec<_> = document.linkages.iter().filter(is_new).map(follow).collect();
     pairs.iter().for_each(|pair| check(pair, findings));
     pairs
 }
@@ -161,6 +164,16 @@ fn check(pair: &ElementPair<'_>, findings: &mut Findings) {
                 format!("MeshElementLinkage has the {side} {reference:?}")
             });
         }
+    }
+    if let (Some(source), Some(target)) = (pair.source, pair.target)
+        && std::mem::discriminant(&source) != std::mem::discriminant(&target)
+    {
+        findings.push(Code::UnequalPair, linkage.origin, || {
+            format!(
+                "MeshElementLinkage links {:?} with {:?}, which are of different kinds",
+                linkage.source, linkage.target
+            )
+        });
     }
     if let (Some(id), None) = (linkage.transform, pair.transform) {
         findings.push(Code::DanglingReference, linkage.origin, || {

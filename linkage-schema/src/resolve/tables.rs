@@ -9,6 +9,13 @@ use crate::{
 };
 use crate::{GeometryReference, Origin, Transform, TransformId};
 
+/// Members that are taken from groups within groups, in all; nested groups are an error, and could be made to multiply.
+const NESTED: usize = 1_000_000;
+/// Members of attribute groups that are followed in search of groups that contain themselves; known files have a handful.
+const STEPS: usize = 1_000_000;
+/// Attributes and groups that are looked through behind one `aref`; known files have a handful.
+const BEHIND: usize = 10_000;
+
 /// One entity of one CAD file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entity<'a> {
@@ -52,8 +59,9 @@ impl<'a> GeometryTable<'a> {
         // Groups may refer to what stands behind them, so their members are looked up when all are known.
         let groups: HashMap<GeometryId, &GeometryGroup> =
             document.geometry_groups.iter().rev().map(|group| (group.id, group)).collect();
+        let mut room = NESTED;
         let opened: Vec<Target<'a>> =
-            document.geometry_groups.iter().map(|group| table.open(group, &groups, findings)).collect();
+            document.geometry_groups.iter().map(|group| table.open(group, &groups, &mut room, findings)).collect();
         for target in opened {
             table.define(target, findings);
         }
@@ -95,6 +103,7 @@ impl<'a> GeometryTable<'a> {
         &self,
         group: &'a GeometryGroup,
         groups: &HashMap<GeometryId, &'a GeometryGroup>,
+        room: &mut usize,
         findings: &mut Findings,
     ) -> Target<'a> {
         let (id, origin) = (group.id, group.origin);
@@ -109,7 +118,9 @@ impl<'a> GeometryTable<'a> {
             } else if let Some(inner) = groups.get(&member) {
                 findings
                     .push(Code::NestedGroup, origin, || format!("GeometryGroup {id} contains GeometryGroup {member}"));
-                nested.extend(inner.members.iter().copied());
+                let taken = inner.members.len().min(*room);
+                *room -= taken;
+                nested.extend(inner.members.iter().take(taken).copied());
             } else {
                 findings.push(Code::DanglingReference, origin, || {
                     format!("GeometryGroup {id} contains {member}, which no GeometryReference defines")
@@ -165,8 +176,13 @@ impl<'a> AttributeTable<'a> {
                 }
             }
         }
+        let mut room = STEPS;
         for group in &document.attribute_groups {
-            table.check_group(group, findings);
+            table.check_members(group, findings);
+            if table.reaches(group, group.id, &mut room) {
+                findings
+                    .push(Code::CyclicGroup, group.origin, || format!("AttributeGroup {} contains itself", group.id));
+            }
         }
         table
     }
@@ -175,27 +191,26 @@ impl<'a> AttributeTable<'a> {
         self.0.contains_key(&id)
     }
 
-    fn check_group(&self, group: &AttributeGroup, findings: &mut Findings) {
+    fn check_members(&self, group: &AttributeGroup, findings: &mut Findings) {
+        let (id, mut seen) = (group.id, HashSet::new());
         for &member in &group.members {
-            if !self.contains(member) {
+            if !seen.insert(member) {
+                findings
+                    .push(Code::RepeatedMember, group.origin, || format!("AttributeGroup {id} lists {member} twice"));
+            } else if !self.contains(member) {
                 findings.push(Code::DanglingReference, group.origin, || {
-                    let id = group.id;
                     format!("AttributeGroup {id} contains {member}, which no Attribute or AttributeGroup defines")
                 });
             }
         }
-        let inside =
-            |id| matches!(self.0.get(&id), Some(AttributeEntry::Group(inner)) if self.reaches(inner, group.id));
-        if group.members.iter().any(|&member| member == group.id || inside(member)) {
-            findings.push(Code::CyclicGroup, group.origin, || format!("AttributeGroup {} contains itself", group.id));
-        }
     }
 
-    /// Whether a group contains an id, at any depth.
-    fn reaches(&self, group: &AttributeGroup, id: AttributeId) -> bool {
+    /// Whether a group contains an id, at any depth; each step takes from the room for them.
+    fn reaches(&self, group: &AttributeGroup, id: AttributeId, room: &mut usize) -> bool {
         let mut seen = HashSet::from([group.id]);
         let mut waiting: Vec<AttributeId> = group.members.clone();
-        while let Some(next) = waiting.pop() {
+        while let Some(next) = waiting.pop().filter(|_| *room > 0) {
+            *room -= 1;
             if next == id {
                 return true;
             }
@@ -210,6 +225,9 @@ impl<'a> AttributeTable<'a> {
     pub(super) fn open(&self, id: AttributeId) -> Vec<&'a Attribute> {
         let (mut seen, mut waiting, mut found) = (HashSet::new(), vec![id], Vec::new());
         while let Some(next) = waiting.pop() {
+            if seen.len() == BEHIND {
+                break;
+            }
             if !seen.insert(next) {
                 continue;
             }

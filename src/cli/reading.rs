@@ -1,0 +1,40 @@
+//! How the CAD is read: options that several commands share.
+
+use std::time::Duration;
+
+use cad::ReadOptions;
+use clap::Args;
+
+use super::curve::positive;
+
+/// Options of reading CAD.
+#[derive(Args)]
+pub(super) struct Reading {
+    /// Multiply the CAD by this factor, or `auto` to find the one between units that fits
+    #[arg(long, value_name = "F|auto", default_value = "1", value_parser = scale)]
+    cad_scale: Scale,
+    /// Seconds after which reading the CAD is given up
+    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = positive)]
+    cad_timeout: f64,
+}
+
+/// The factor of `--cad-scale`; `None` is `auto`.
+#[derive(Clone, Copy, Debug)]
+struct Scale(Option<f64>);
+
+fn scale(text: &str) -> Result<Scale, String> {
+    if text == "auto" { Ok(Scale(None)) } else { positive(text).map(|factor| Scale(Some(factor))) }
+}
+
+impl Reading {
+    /// The factor; `None` is the one that fits.
+    pub(super) fn scale(&self) -> Option<f64> {
+        self.cad_scale.0
+    }
+
+    /// What reading needs to know, with the given factor or none yet.
+    pub(super) fn options(&self) -> ReadOptions {
+        let timeout = Duration::from_secs_f64(self.cad_timeout);
+        ReadOptions { timeout, scale: self.scale().unwrap_or(1.0), ..ReadOptions::default() }
+    }
+}
