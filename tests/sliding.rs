@@ -22,7 +22,9 @@ fn sliding_columns_gain_what_frozen_walls_cannot() {
     for order in ["2", "3"] {
         let (slid, slid_away) = curve(order, &[]);
         let (frozen, frozen_away) = curve(order, &["--freeze-walls"]);
-        println!("P{order}: C_JAC {frozen:.3} frozen, {slid:.3} slid; wall off the CAD {frozen_away:.2e}, {slid_away:.2e}");
+        println!(
+            "P{order}: C_JAC {frozen:.3} frozen, {slid:.3} slid; wall off the CAD {frozen_away:.2e}, {slid_away:.2e}"
+        );
         assert!(slid >= frozen + 0.1, "P{order}: {frozen} frozen, {slid} slid");
         assert!(slid_away <= 1.2 * frozen_away, "P{order}: the wall is {slid_away} off the CAD, {frozen_away} frozen");
     }

@@ -310,7 +310,7 @@ impl Run<'_, '_> {
     }
 
     /// One stage.
-    fn stage(&mut self, x: &mut Vec<DVec3>) {
+    fn stage(&mut self, x: &mut [DVec3]) {
         let stage = self.pace.stage;
         while self.goes_on() {
             let (low, focused) = (self.lowest() < LOW, self.pace.focused);
@@ -470,8 +470,12 @@ impl Run<'_, '_> {
         let weights = Weights { shape, jacobian, density: Density { emphasis: EMPHASIS, delta } };
         let cuts = patch.elements.iter().map(|&e| self.costs[e].cut).collect();
         let kernels = patch.runs.iter().map(|run| self.surveys[usize::from(run.density)].of(run.cell)).collect();
-        let anchored =
-            |i: usize| patch.movable[i].then(|| self.constraint.anchor(patch.nodes[i])).flatten().map(|a| (i, a.loosened(self.looseness)));
+        let anchored = |i: usize| {
+            patch.movable[i]
+                .then(|| self.constraint.anchor(patch.nodes[i]))
+                .flatten()
+                .map(|a| (i, a.loosened(self.looseness)))
+        };
         let anchors = (0..patch.nodes.len()).filter_map(anchored).collect();
         let objective = Objective { patch, kernels, cuts, weights, anchors };
         let progress = self.progress(patch);
