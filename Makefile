@@ -73,7 +73,7 @@ bench: build ## benchmarks; minutes, not a test
 oracle: setup-build ## closest points beside OCCT's own searches and dense grids; SAGITTA_CAD=DIR adds foreign CAD; minutes
 	SAGITTA_ORACLE_QUERIES=125 cargo test -p sagitta-cad --release --test oracle -- --ignored --nocapture
 
-table: build venv ## the README's table: the fixtures curved, and judged by other code; minutes
+table: build venv ## a table of the fixtures, curved and judged by other code; minutes
 	"$(SAGITTA_PYTHON)" tests/judge/table.py $(SAGITTA)
 
 engines: build venv ## the engines side by side on the weeble and the wing: fixtures/pictures/engines.png and a table; 4 minutes

@@ -53,9 +53,8 @@ const FOCUS_RINGS: usize = 4;
 const LOOSENINGS: [f64; 2] = [30.0, 100.0];
 /// What a loosening must gain for its places to be kept: nodes that slide take the wall farther from the CAD.
 const WORTH: f64 = 0.02;
-/// Regularisation of determinants, as a share of what the worst is below [`LOW`], but for 1 at most (after Garanzha et al.,
-/// doi:10.1145/3450626.3459847). Without that end one element whose straight Jacobian is next to nothing somewhere (-9 times it
-/// on the torus at scale 0.5) takes the barrier from all others, and hundreds of them invert.
+/// Regularisation of determinants, as a share of what the worst is below [`LOW`] (after Garanzha et al.,
+/// doi:10.1145/3450626.3459847). Capped at the worst's 1, cylinder_bl at scale 0.5, P4, did not come out of J = -1.2 J_c.
 const REGULARISATION: f64 = 0.5;
 
 /// What the user can set.
@@ -465,7 +464,7 @@ impl Run<'_, '_> {
     fn descend(&mut self, patch: &Patch, x: &mut [DVec3]) {
         let stage = self.pace.stage;
         let alpha = self.settings.alpha.unwrap_or_else(|| quality::alpha(self.problem.order));
-        let delta = REGULARISATION * (LOW - self.lowest()).clamp(0.0, 1.0);
+        let delta = REGULARISATION * (LOW - self.lowest()).max(0.0);
         let (shape, jacobian) = if stage == Stage::Shape { (1.0, 0.0) } else { (alpha, 1.0 - alpha) };
         let weights = Weights { shape, jacobian, density: Density { emphasis: EMPHASIS, delta } };
         let cuts = patch.elements.iter().map(|&e| self.costs[e].cut).collect();
