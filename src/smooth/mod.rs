@@ -1,5 +1,6 @@
 //! Smoothing: stages, the active patch, the objective and its descent. Sees the CAD only as a [`Constraint`].
 
+mod best;
 mod block;
 mod checkpoint;
 mod density;
@@ -10,7 +11,9 @@ mod kernel;
 mod objective;
 mod patch;
 mod problem;
+mod settings;
 mod stages;
+mod summary;
 mod survey;
 mod watch;
 
@@ -20,8 +23,10 @@ use crate::mesh::NodeId;
 pub use checkpoint::Checkpoint;
 pub use engine::Engine;
 pub use problem::{ElementCost, Problem};
-pub use stages::{Progress, Settings, Smoothed, Summary, smooth};
-pub use watch::Watch;
+pub use settings::Settings;
+pub use stages::smooth;
+pub use summary::{Smoothed, Summary};
+pub use watch::{Progress, Watch};
 
 /// The directions in which a node may move from where it stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
