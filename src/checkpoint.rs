@@ -1,7 +1,7 @@
 //! Checkpoint files: a state of the smoothing, and of what work it is.
 //!
 //! ```text
-//! "sagitta checkpoint 1\n"                 21 bytes
+//! "sagitta checkpoint 2\n"                 21 bytes
 //! fingerprint of the work                  u64, little-endian
 //! volume elements, nodes                   2 x u64
 //! state                                    smooth::Checkpoint
@@ -20,7 +20,7 @@ use rustc_hash::FxHasher;
 use crate::formats;
 use crate::smooth::Checkpoint;
 
-const MAGIC: &[u8; 21] = b"sagitta checkpoint 1\n";
+const MAGIC: &[u8; 21] = b"sagitta checkpoint 2\n";
 
 /// What a checkpoint belongs to: the same mesh, CAD and settings give the same number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,13 +66,14 @@ pub enum CheckpointError {
 }
 
 impl Work {
-    /// The work of smoothing from `start` with the targets `straight`; `settings` tells all else that matters.
+    /// The work of smoothing a mesh with the targets `straight` whose boundary nodes are displaced so; `settings` tells all else that
+    /// matters.
     #[must_use]
-    pub fn new(elements: usize, straight: &[DVec3], start: &[DVec3], settings: &str) -> Work {
+    pub fn new(elements: usize, straight: &[DVec3], displacement: &[DVec3], settings: &str) -> Work {
         let mut hasher = FxHasher::default();
         hasher.write(env!("CARGO_PKG_VERSION").as_bytes());
         hasher.write(settings.as_bytes());
-        for x in straight.iter().chain(start).flat_map(|x| x.to_array()) {
+        for x in straight.iter().chain(displacement).flat_map(|x| x.to_array()) {
             hasher.write_u64(x.to_bits());
         }
         Work { fingerprint: hasher.finish(), elements, nodes: straight.len() }
@@ -96,36 +97,66 @@ pub fn write(path: &Path, work: &Work, checkpoint: &Checkpoint) -> Result<(), fo
     })
 }
 
-/// Reads the checkpoint of `work`.
-///
-/// # Errors
-/// [`CheckpointError`].
-pub fn read(path: &Path, work: &Work) -> Result<Checkpoint<'static>, CheckpointError> {
-    let file = path.to_owned();
-    let failed = |source: io::Error| match source.kind() {
-        io::ErrorKind::UnexpectedEof | io::ErrorKind::InvalidData => CheckpointError::Damaged { file: path.to_owned() },
-        _ => CheckpointError::Io { file: path.to_owned(), source },
-    };
-    let mut input = CrcReader::new(BufReader::new(File::open(path).map_err(failed)?));
-    let mut magic = Vec::new();
-    input.by_ref().take(MAGIC.len() as u64).read_to_end(&mut magic).map_err(failed)?;
-    if magic != MAGIC {
-        return Err(CheckpointError::Foreign { file });
+/// A checkpoint file of which the head was read.
+pub struct Found {
+    file: PathBuf,
+    input: CrcReader<BufReader<File>>,
+    head: [u64; 3],
+}
+
+impl Found {
+    /// Opens a checkpoint file.
+    ///
+    /// # Errors
+    /// [`CheckpointError`].
+    pub fn open(path: &Path) -> Result<Found, CheckpointError> {
+        let failed = |source| failed(path, source);
+        let mut input = CrcReader::new(BufReader::new(File::open(path).map_err(failed)?));
+        let mut magic = Vec::new();
+        input.by_ref().take(MAGIC.len() as u64).read_to_end(&mut magic).map_err(failed)?;
+        if magic != MAGIC {
+            return Err(CheckpointError::Foreign { file: path.to_owned() });
+        }
+        let mut head = [0; 3];
+        for number in &mut head {
+            let mut bytes = [0; 8];
+            input.read_exact(&mut bytes).map_err(failed)?;
+            *number = u64::from_le_bytes(bytes);
+        }
+        Ok(Found { file: path.to_owned(), input, head })
     }
-    for expected in [work.fingerprint, work.elements as u64, work.nodes as u64] {
-        let mut number = [0; 8];
-        input.read_exact(&mut number).map_err(failed)?;
-        if u64::from_le_bytes(number) != expected {
+
+    /// Nodes of the mesh that it belongs to: they tell its order.
+    #[must_use]
+    pub fn nodes(&self) -> usize {
+        usize::try_from(self.head[2]).unwrap_or(usize::MAX)
+    }
+
+    /// Reads the rest, if it belongs to `work`.
+    ///
+    /// # Errors
+    /// [`CheckpointError`].
+    pub fn read(self, work: &Work) -> Result<Checkpoint<'static>, CheckpointError> {
+        let Found { file, mut input, head } = self;
+        if head != [work.fingerprint, work.elements as u64, work.nodes as u64] {
             return Err(CheckpointError::OtherWork { file });
         }
+        let failed = |source| failed(&file, source);
+        let checkpoint = Checkpoint::read(&mut input, work.elements, work.nodes).map_err(failed)?;
+        let found = Crc::sum(input.crc());
+        let mut stored = [0; 4];
+        input.read_exact(&mut stored).map_err(failed)?;
+        let more = input.read(&mut [0]).map_err(failed)?;
+        if u32::from_le_bytes(stored) != found || more > 0 {
+            return Err(CheckpointError::Damaged { file });
+        }
+        Ok(checkpoint)
     }
-    let checkpoint = Checkpoint::read(&mut input, work.elements, work.nodes).map_err(failed)?;
-    let found = Crc::sum(input.crc());
-    let mut stored = [0; 4];
-    input.read_exact(&mut stored).map_err(failed)?;
-    let more = input.read(&mut [0]).map_err(failed)?;
-    if u32::from_le_bytes(stored) != found || more > 0 {
-        return Err(CheckpointError::Damaged { file });
+}
+
+fn failed(path: &Path, source: io::Error) -> CheckpointError {
+    match source.kind() {
+        io::ErrorKind::UnexpectedEof | io::ErrorKind::InvalidData => CheckpointError::Damaged { file: path.to_owned() },
+        _ => CheckpointError::Io { file: path.to_owned(), source },
     }
-    Ok(checkpoint)
 }

@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use crate::element::{Cell, Order, basis, canonical, interior_count, interior_slots, interior_start, lattice};
+use crate::element::{Cell, Order, basis, canonical, interior_count, interior_slots, interior_start};
 use crate::mesh::{Block, EntityKey, Mesh, NodeId, TooMany};
 
 /// An elevated mesh and where its new nodes came from.
@@ -72,10 +72,7 @@ impl Chains {
 
 impl Carriers {
     fn new(cell: Cell, order: Order) -> Carriers {
-        let at = |node: &[u8; 3]| node.map(|x| f64::from(x) / order.get() as f64);
-        let chart = |node| crate::element::bernstein::chart(cell, at(node));
-        let inside = &lattice(cell, order)[interior_start(cell, order)..];
-        let weights = inside.iter().map(|node| basis::values(cell, Order::LINEAR, chart(node))).collect();
+        let weights = basis::at_lattice(cell, Order::LINEAR, order).split_off(interior_start(cell, order));
         Carriers { cell, corners: Vec::new(), first: Vec::new(), weights }
     }
 
@@ -259,7 +256,7 @@ impl Builder {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use crate::element::bernstein;
+    use crate::element::{bernstein, lattice};
 
     /// One element of each kind, corners in an order that is not canonical.
     fn alone(cell: Cell) -> Mesh {

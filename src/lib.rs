@@ -39,6 +39,7 @@
 //! [`element`] is the one place that knows cells: their lattices, bases, sub-elements, sample tables and file orders.
 #![forbid(unsafe_code)]
 
+mod ascent;
 pub mod associate;
 pub mod certify;
 pub mod checkpoint;

@@ -30,22 +30,21 @@ use std::time::Instant;
 use cad::{Model, ReadOptions};
 use glam::DVec3;
 
+pub use crate::ascent::LowerOrder;
+use crate::ascent::{Ascent, Level, Ready};
 use crate::associate::{
     self, AssociateError, Association, Boundary, Choice, Host, LinkageError, Summary, TieError, UnknownPatch,
 };
 use crate::certify::{self, Certificate, WallFace, Walls};
-use crate::checkpoint::{self, CheckpointError, Work};
+use crate::checkpoint::{CheckpointError, Work};
 use crate::element::Order;
-use crate::elevate::{Elevated, elevate};
+use crate::elevate::Elevated;
 use crate::formats;
 use crate::ladder::{Climbed, Ladder};
-use crate::layers::leave_straight_beyond;
 use crate::mesh::{Mesh, TooMany};
-use crate::periodic::Ties;
-use crate::perturb::perturb;
-use crate::project::{CadConstraint, Projected, project};
+use crate::project::Projected;
 use crate::retreat::GivenUp;
-use crate::smooth::{self, Checkpoint, Problem, Smoothed, Watch, smooth};
+use crate::smooth::{self, Checkpoint, Problem, Smoothed, Watch};
 
 /// Elements that an error lists by number.
 const LISTED: usize = 10;
@@ -69,6 +68,8 @@ pub struct Job {
     pub freeze_linear: bool,
     /// Keep nodes on curved walls where projection put them.
     pub freeze_walls: bool,
+    /// Begin at the order itself, not at the curved mesh of the order below.
+    pub direct: bool,
     /// Layers of elements off curved walls that may be curved; `None` leaves it to the walls' displacement.
     pub curve_layers: Option<NonZeroUsize>,
     /// What the CAD is multiplied by; `None` finds the factor between known units that makes it fit.
@@ -94,6 +95,7 @@ impl Job {
             max_offset: 1e-3,
             freeze_linear: false,
             freeze_walls: false,
+            direct: false,
             curve_layers: None,
             cad_scale: Some(1.0),
             reading: ReadOptions::default(),
@@ -103,11 +105,11 @@ impl Job {
     }
 
     /// What a checkpoint of this job belongs to.
-    fn work(&self, problem: &Problem, straight: &[DVec3], start: &[DVec3]) -> Work {
+    pub(crate) fn work(&self, problem: &Problem, straight: &[DVec3], displacement: &[DVec3]) -> Work {
         let smooth::Settings { threshold, alpha, max_sweeps: _, survey_factor, engine } = &self.smoothing;
-        let held = (self.freeze_linear, self.freeze_walls, self.curve_layers);
+        let held = (self.freeze_linear, self.freeze_walls, self.curve_layers, self.direct);
         let settings = format!("{:?}", (threshold, alpha, survey_factor, engine, held));
-        Work::new(problem.element_count(), straight, start, &settings)
+        Work::new(problem.element_count(), straight, displacement, &settings)
     }
 }
 
@@ -146,6 +148,8 @@ impl Step {
 
 /// Who is told how the work goes on.
 pub trait Observer {
+    /// The steps from [`Step::Elevate`] to [`Step::Smooth`] begin, for a mesh of this order.
+    fn order(&mut self, _order: Order) {}
     /// A step begins.
     fn step(&mut self, step: Step);
     /// The smoother finished a sweep; false ends it.
@@ -155,9 +159,9 @@ pub trait Observer {
 }
 
 /// Hands on what the smoother tells.
-struct Told<'a> {
-    observer: &'a mut dyn Observer,
-    work: Work,
+pub(crate) struct Told<'a> {
+    pub(crate) observer: &'a mut dyn Observer,
+    pub(crate) work: Work,
 }
 
 impl Watch for Told<'_> {
@@ -216,6 +220,8 @@ pub struct Curved {
     pub boundary: Boundary,
     /// Hosts, displacements and counts of the projection.
     pub projected: Projected,
+    /// What the smoother did at the orders below.
+    pub lower_orders: Vec<LowerOrder>,
     /// What the smoother did.
     pub smoothed: Smoothed,
     /// What is proven of the mesh.
@@ -228,7 +234,7 @@ pub struct Curved {
     pub cad_unit: String,
     /// What the CAD was multiplied by.
     pub cad_scale: f64,
-    /// Seconds a step.
+    /// Seconds a step, all orders together.
     pub seconds: Vec<(Step, f64)>,
 }
 
@@ -250,40 +256,10 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
     let known: Vec<_> = linear.periodic.iter().map(|pair| pair.slave).collect();
     linear.periodic.extend(tied.claims.periodic.into_iter().filter(|pair| !known.contains(&pair.slave)));
 
-    clock.step(Step::Elevate);
-    let mut elevated =
-        elevate(&linear, job.order).map_err(|cause| PipelineError::TooMany { mesh: job.mesh.clone(), cause })?;
-    drop(linear);
-    let (ties, notes) = Ties::new(&mut elevated, &boundary, job.freeze_linear);
+    let ascent = Ascent::new(job, linear, &boundary, &association)?;
+    let (level, lower_orders) = ascent.climb(&mut clock)?;
+    let Level { ready: Ready { mut elevated, ties, mut projected, notes }, places, mut smoothed } = level;
     association.notes.extend(notes);
-
-    clock.step(Step::Project);
-    let mut projected = project(&elevated, &boundary, &association, job.freeze_linear);
-    ties.carry(&elevated.mesh.points, &mut projected.displacement);
-    if let Some(layers) = job.curve_layers {
-        leave_straight_beyond(layers, &elevated, &boundary, &association, &ties, &mut projected);
-    }
-
-    clock.step(Step::Perturb);
-    let mut places = perturb(&elevated, &boundary, &association, &projected, &ties);
-    ties.apply(&mut places);
-
-    clock.step(Step::Smooth);
-    let straight = &elevated.mesh.points;
-    let problem = Problem::new(&elevated.mesh, straight);
-    let constraint = CadConstraint::new(
-        &association,
-        straight,
-        &projected,
-        &ties,
-        elevated.linear_nodes,
-        job.freeze_walls,
-        job.freeze_linear,
-    );
-    let work = job.work(&problem, straight, &places);
-    let resumed = job.resume.as_deref().map(|path| checkpoint::read(path, &work)).transpose()?;
-    let mut told = Told { observer: clock.observer, work };
-    let mut smoothed = smooth(&problem, &constraint, &job.smoothing, &mut places, resumed, &mut told);
 
     clock.step(Step::Certify);
     let ladder = Ladder {
@@ -307,6 +283,7 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
         association,
         boundary,
         projected,
+        lower_orders,
         smoothed,
         certificate,
         walls,
@@ -413,8 +390,8 @@ fn refused(mesh: &Path, cad: &Path, cause: AssociateError) -> PipelineError {
 }
 
 /// Times the steps and tells the observer.
-struct Clock<'a> {
-    observer: &'a mut dyn Observer,
+pub(crate) struct Clock<'a> {
+    pub(crate) observer: &'a mut dyn Observer,
     current: Option<(Step, Instant)>,
     seconds: Vec<(Step, f64)>,
 }
@@ -424,7 +401,7 @@ impl<'a> Clock<'a> {
         Clock { observer, current: None, seconds: Vec::new() }
     }
 
-    fn step(&mut self, step: Step) {
+    pub(crate) fn step(&mut self, step: Step) {
         self.close();
         self.current = Some((step, Instant::now()));
         self.observer.step(step);
@@ -432,7 +409,11 @@ impl<'a> Clock<'a> {
 
     fn close(&mut self) {
         if let Some((step, start)) = self.current.take() {
-            self.seconds.push((step, start.elapsed().as_secs_f64()));
+            let spent = start.elapsed().as_secs_f64();
+            match self.seconds.iter_mut().find(|(own, _)| *own == step) {
+                Some((_, seconds)) => *seconds += spent,
+                None => self.seconds.push((step, spent)),
+            }
         }
     }
 

@@ -59,6 +59,9 @@ pub(super) struct Options {
     /// Keep nodes on curved walls where projection put them
     #[arg(long)]
     freeze_walls: bool,
+    /// Begin at the order itself; without it the mesh is curved to P2 first, and each order begins where the one below ended
+    #[arg(long)]
+    direct: bool,
     /// Curve this many layers of elements off curved walls, and leave those beyond straight; `auto` lets the walls' displacement
     /// end where it has fallen to nothing
     #[arg(long, value_name = "auto|N", default_value = "auto", value_parser = layers)]
@@ -75,7 +78,7 @@ pub(super) struct Options {
     /// Write the costs after each sweep, with its time, as CSV
     #[arg(long, value_name = "T.csv")]
     trace: Option<PathBuf>,
-    /// Most sweeps over the active nodes
+    /// Most sweeps over the active nodes at each order
     #[arg(long, value_name = "N", default_value_t = 200)]
     max_sweeps: usize,
     /// Density of the closing survey, in multiples of the order
@@ -159,6 +162,7 @@ impl Options {
             max_offset: self.max_offset,
             freeze_linear: self.freeze_linear,
             freeze_walls: self.freeze_walls,
+            direct: self.direct,
             curve_layers: self.curve_layers.0,
             cad_scale: self.reading.scale(),
             reading: self.reading.options(),

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::trace::Trace;
 use crate::checkpoint::{self, Work};
+use crate::element::Order;
 use crate::formats;
 use crate::pipeline::{Observer, Step};
 use crate::smooth::{Checkpoint, Progress};
@@ -13,7 +14,7 @@ pub(super) struct Keeper<'a, 't> {
     trace: &'a mut Trace<'t>,
     file: Option<PathBuf>,
     every: usize,
-    /// Sweeps at the last checkpoint.
+    /// Sweeps at the last checkpoint of this order.
     last: usize,
     /// What went wrong at the last one; the work goes on.
     pub(super) failure: Option<formats::Error>,
@@ -26,6 +27,11 @@ impl<'a, 't> Keeper<'a, 't> {
 }
 
 impl Observer for Keeper<'_, '_> {
+    fn order(&mut self, order: Order) {
+        self.last = 0;
+        self.trace.order(order);
+    }
+
     fn step(&mut self, step: Step) {
         self.trace.step(step);
     }

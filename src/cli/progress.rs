@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::INTERRUPTED;
+use crate::element::Order;
 use crate::pipeline::{Observer, Step};
 use crate::smooth::Progress;
 
@@ -38,6 +39,7 @@ pub(super) struct Teller {
     pub(super) stop: Option<Stop>,
     bar: Option<ProgressBar>,
     quiet: bool,
+    order: Option<Order>,
     start: Instant,
     smoothing: Option<Instant>,
     last: Option<Instant>,
@@ -48,7 +50,17 @@ impl Teller {
     pub(super) fn new(quiet: bool) -> Teller {
         let bar = (!quiet && std::io::stderr().is_terminal()).then(spinner);
         let interrupted = Arc::default();
-        Teller { interrupted, limit: None, stop: None, bar, quiet, start: Instant::now(), smoothing: None, last: None }
+        Teller {
+            interrupted,
+            limit: None,
+            stop: None,
+            bar,
+            quiet,
+            order: None,
+            start: Instant::now(),
+            smoothing: None,
+            last: None,
+        }
     }
 
     /// Ends smoothing after a time limit, and takes over interrupts: the first ends the smoothing, the second the program.
@@ -89,11 +101,16 @@ fn spinner() -> ProgressBar {
 }
 
 impl Observer for Teller {
+    fn order(&mut self, order: Order) {
+        self.order = Some(order);
+    }
+
     fn step(&mut self, step: Step) {
         if step == Step::Smooth {
             self.smoothing = Some(Instant::now());
         }
-        self.say(format!("step {} of {}: {}", step as usize + 1, Step::ALL.len(), step.name()));
+        let order = self.order.map_or(String::new(), |order| format!(", {order}"));
+        self.say(format!("step {} of {}: {}{order}", step as usize + 1, Step::ALL.len(), step.name()));
     }
 
     fn progress(&mut self, progress: &Progress) -> bool {
@@ -103,8 +120,9 @@ impl Observer for Teller {
             let spent = self.smoothing.map_or(0.0, |start| start.elapsed().as_secs_f64());
             let left = spent / progress.sweep.max(1) as f64 * (progress.max_sweeps - progress.sweep) as f64;
             self.say(format!(
-                "smooth: stage {}, sweep {} of at most {}, {} active nodes, worst cost {:.4} near ({:.4}, {:.4}, {:.4}), \
+                "smooth{}: stage {}, sweep {} of at most {}, {} active nodes, worst cost {:.4} near ({:.4}, {:.4}, {:.4}), \
                  {} inverted, at most {left:.0} s left",
+                self.order.map_or(String::new(), |order| format!(" {order}")),
                 progress.stage,
                 progress.sweep,
                 progress.max_sweeps,

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use super::Failure;
 use super::progress::Teller;
+use crate::element::Order;
 use crate::formats;
 use crate::pipeline::{Observer, Step};
 use crate::smooth::{Progress, Smoothed};
@@ -14,26 +15,29 @@ pub(super) struct Trace<'a> {
     teller: &'a mut Teller,
     start: Option<Instant>,
     end: Option<f64>,
-    rows: Vec<(f64, Progress)>,
+    order: Option<Order>,
+    rows: Vec<(f64, usize, Progress)>,
 }
 
 impl<'a> Trace<'a> {
     pub(super) fn new(teller: &'a mut Teller) -> Trace<'a> {
-        Trace { teller, start: None, end: None, rows: Vec::new() }
+        Trace { teller, start: None, end: None, order: None, rows: Vec::new() }
     }
 
-    /// Writes the rows. Seconds count from the beginning of the smoothing; costs are those of the last survey before the
+    /// Writes the rows. Seconds count from the beginning of the smoothing at the first order; costs are those of the last survey before the
     /// sweep, in the last row those of the mesh.
     pub(super) fn write(&self, path: &Path, smoothed: &Smoothed) -> Result<(), Failure> {
-        let mut text = "seconds,sweep,stage,active_nodes,c_wcn_min,c_jac_min,inverted\n".to_owned();
-        for (seconds, p) in &self.rows {
+        let mut text = "seconds,order,sweep,stage,active_nodes,c_wcn_min,c_jac_min,inverted\n".to_owned();
+        for (seconds, order, p) in &self.rows {
             let [wcn, jac] = p.costs;
-            let row = format!("{seconds:.3},{},{},{},{wcn},{jac},{}\n", p.sweep, p.stage, p.active_nodes, p.inverted);
+            let row =
+                format!("{seconds:.3},{order},{},{},{},{wcn},{jac},{}\n", p.sweep, p.stage, p.active_nodes, p.inverted);
             text.push_str(&row);
         }
         let (end, seconds) = (smoothed.end, self.end.unwrap_or(0.0));
-        let stage = self.rows.last().map_or(0, |(_, p)| p.stage);
-        let last = format!("{},{stage},0,{},{},{}", smoothed.sweeps, end.c_wcn, end.c_jac, end.inverted);
+        let stage = self.rows.last().map_or(0, |(.., p)| p.stage);
+        let order = self.order.map_or(0, Order::get);
+        let last = format!("{order},{},{stage},0,{},{},{}", smoothed.sweeps, end.c_wcn, end.c_jac, end.inverted);
         formats::write_bytes(path, format!("{text}{seconds:.3},{last}\n").as_bytes())?;
         Ok(())
     }
@@ -44,17 +48,22 @@ impl<'a> Trace<'a> {
 }
 
 impl Observer for Trace<'_> {
+    fn order(&mut self, order: Order) {
+        self.order = Some(order);
+        self.teller.order(order);
+    }
+
     fn step(&mut self, step: Step) {
         match step {
-            Step::Smooth => self.start = Some(Instant::now()),
-            _ if self.end.is_none() && self.start.is_some() => self.end = Some(self.seconds()),
+            Step::Smooth if self.start.is_none() => self.start = Some(Instant::now()),
+            Step::Certify => self.end = Some(self.seconds()),
             _ => {}
         }
         self.teller.step(step);
     }
 
     fn progress(&mut self, progress: &Progress) -> bool {
-        self.rows.push((self.seconds(), *progress));
+        self.rows.push((self.seconds(), self.order.map_or(0, Order::get), *progress));
         self.end = self.end.map(|_| self.seconds()); // the ladder smooths again
         self.teller.progress(progress)
     }

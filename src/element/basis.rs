@@ -32,6 +32,14 @@ pub fn values(cell: Cell, order: Order, at: [f64; 3]) -> Vec<f64> {
     (0..n).map(|node| (0..n).map(|a| b[a] * net[a * n + node]).sum()).collect()
 }
 
+/// Values of the Lagrange functions of `order` at the nodes of the lattice of another order: `[node of lattice_order][function]`.
+#[must_use]
+pub fn at_lattice(cell: Cell, order: Order, lattice_order: Order) -> Vec<Vec<f64>> {
+    let unit = |node: &[u8; 3]| node.map(|x| f64::from(x) / lattice_order.get() as f64);
+    let nodes = lattice(cell, lattice_order).iter();
+    nodes.map(|node| values(cell, order, bernstein::chart(cell, unit(node)))).collect()
+}
+
 /// Derivatives of the Lagrange functions by the coordinates of the unit cell, at a point of the cell's chart.
 #[must_use]
 pub fn gradients(cell: Cell, order: Order, at: [f64; 3]) -> Vec<[f64; 3]> {

@@ -50,6 +50,7 @@ pub fn report(job: &Job, curved: &Curved) -> Report {
         turning: turning(curved),
         certificate: CertificateReport::new(mesh, &curved.certificate),
         smoothing: SmoothingReport {
+            lower_orders: curved.lower_orders.clone(),
             sweeps: curved.smoothed.sweeps,
             stopped: curved.smoothed.stopped,
             start: curved.smoothed.start,

@@ -10,6 +10,7 @@ mod text;
 
 use serde::Serialize;
 
+use crate::pipeline::LowerOrder;
 use crate::quality::Turning;
 use crate::smooth::Summary;
 
@@ -203,8 +204,10 @@ pub struct WorstElement {
 }
 
 /// What the smoother did.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct SmoothingReport {
+    /// What was done at the orders below.
+    pub lower_orders: Vec<LowerOrder>,
     /// Sweeps over the active nodes.
     pub sweeps: usize,
     /// Whether it was ended before it was done.

@@ -109,6 +109,13 @@ impl Report {
     fn work(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let s = &self.smoothing;
         let stopped = if s.stopped { ", stopped early" } else { "" };
+        for l in &s.lower_orders {
+            writeln!(
+                f,
+                "smoothing at {}: {} sweeps; min C_WCN {:.4}, min C_JAC {:.4}",
+                l.order, l.sweeps, l.end.c_wcn, l.end.c_jac
+            )?;
+        }
         writeln!(
             f,
             "smoothing: {} sweeps{stopped}; min C_WCN {:.4} -> {:.4}, min C_JAC {:.4} -> {:.4}, inverted {} -> {}",

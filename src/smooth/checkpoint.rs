@@ -8,12 +8,15 @@ use std::io::{self, Read, Write};
 
 use glam::DVec3;
 
+use super::Summary;
 use super::stages::{Pace, Stage};
 
 /// All that smoothing needs to go on as if it had not been interrupted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checkpoint<'a> {
     pub(super) pace: Pace,
+    /// Smallest costs before the first sweep.
+    pub(super) start: Summary,
     pub(super) sweeps: usize,
     /// Each volume element's survey.
     pub(super) density: Cow<'a, [u8]>,
@@ -37,7 +40,11 @@ impl Checkpoint<'_> {
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
         let Pace { stage, idle, low_rings, focused } = self.pace;
         out.write_all(&[u8::from(stage == Stage::Full), u8::from(focused)])?;
-        for number in [idle, low_rings, self.sweeps] {
+        let Summary { c_wcn, c_jac, inverted } = self.start;
+        for cost in [c_wcn, c_jac] {
+            out.write_all(&cost.to_le_bytes())?;
+        }
+        for number in [inverted, idle, low_rings, self.sweeps] {
             out.write_all(&(number as u64).to_le_bytes())?;
         }
         out.write_all(&self.density)?;
@@ -59,7 +66,9 @@ impl Checkpoint<'_> {
     pub fn read(input: &mut impl Read, elements: usize, nodes: usize) -> io::Result<Checkpoint<'static>> {
         let [full, focused] = array(input)?;
         let stage = if full == 1 { Stage::Full } else { Stage::Shape };
+        let [c_wcn, c_jac] = [f64::from_le_bytes(array(input)?), f64::from_le_bytes(array(input)?)];
         let mut number = || array(input).map(|bytes| u64::from_le_bytes(bytes) as usize);
+        let start = Summary { c_wcn, c_jac, inverted: number()? };
         let pace = Pace { stage, idle: number()?, low_rings: number()?, focused: focused == 1 };
         let sweeps = number()?;
         let mut density = vec![0; elements];
@@ -73,7 +82,7 @@ impl Checkpoint<'_> {
             }
             best.insert(node, read_place(input)?);
         }
-        Ok(Checkpoint { pace, sweeps, density: density.into(), x: x.into(), best })
+        Ok(Checkpoint { pace, start, sweeps, density: density.into(), x: x.into(), best })
     }
 }
 

@@ -71,13 +71,14 @@ pub fn smooth(
     let surveys: Vec<Kernels> =
         factors(settings.survey_factor).iter().map(|f| Kernels::new(problem, problem.order.get() * f)).collect();
     let costs = problem.all_costs(&surveys[surveys.len() - 1], x);
-    let start = Summary::of(&costs);
+    let start = resumed.as_ref().map_or_else(|| Summary::of(&costs), |checkpoint| checkpoint.start);
     let mut run = Run {
         problem,
         constraint,
         settings,
         surveys,
         density: vec![0; costs.len()],
+        start,
         best: Best::is_now(start),
         costs,
         pace: Pace::new(if start.c_wcn <= 0.0 { Stage::Shape } else { Stage::Full }),
@@ -139,6 +140,8 @@ struct Run<'a, 'p> {
     density: Vec<u8>,
     /// By the closing survey.
     costs: Vec<ElementCost>,
+    /// Before the first sweep.
+    start: Summary,
     best: Best,
     pace: Pace,
     sweeps: usize,
@@ -245,13 +248,13 @@ impl Run<'_, '_> {
 
     /// One round: a survey dense enough, a descent, and what it gained.
     fn round(&mut self, active: &[usize], x: &mut [DVec3]) {
-        let before = self.score();
+        let before = self.standing();
         self.densify(active, x);
         let patch = Patch::new(self.problem, active, &self.density);
         self.best.note(&patch, x, &self.costs);
         self.descend(&patch, x);
         self.survey(&patch.elements, x);
-        self.pace.idle = if self.score() - before < PROGRESS { self.pace.idle + 1 } else { 0 };
+        self.pace.idle = if self.standing() - before < PROGRESS { self.pace.idle + 1 } else { 0 };
     }
 
     /// Offers the state between two rounds to be kept; after one that was cut short there is no going on.
@@ -260,7 +263,7 @@ impl Run<'_, '_> {
             let (pace, sweeps) = (self.pace, self.sweeps);
             let best = self.best.places.iter().map(|(&node, &place)| (node, place)).collect();
             let (density, x) = ((&self.density[..]).into(), x.into());
-            self.watch.checkpoint(&Checkpoint { pace, sweeps, density, x, best });
+            self.watch.checkpoint(&Checkpoint { pace, start: self.start, sweeps, density, x, best });
         }
     }
 
@@ -300,6 +303,15 @@ impl Run<'_, '_> {
     fn score(&self) -> f64 {
         let summary = Summary::of(&self.costs);
         if self.pace.stage == Stage::Shape { summary.c_wcn } else { summary.score() }
+    }
+
+    /// What a round is judged by: the best state where that is valid, so that a fall and its mending are no progress.
+    fn standing(&self) -> f64 {
+        if self.pace.stage == Stage::Full && self.best.summary.inverted == 0 {
+            self.best.summary.score()
+        } else {
+            self.score()
+        }
     }
 
     /// The levels, `C_WCN` and `C_JAC`, below which elements are within [`FOCUS`] of the worst of their component.
