@@ -1,17 +1,18 @@
 //! `--curve-layers N`: elements beyond N layers off the curved walls keep their straight places, and are told of.
 #![allow(clippy::unwrap_used)]
 
-use std::path::Path;
-use std::process::Command;
+#[macro_use]
+mod common;
 
+use std::path::Path;
+
+use common::{fixture, json, sagitta};
 use glam::DVec3;
 use sagitta::certify::{self, Settings};
 use sagitta::element::Order;
 use sagitta::elevate::elevate;
 use sagitta::formats;
 use sagitta::mesh::Mesh;
-
-const LINEAR: &str = "fixtures/wing_sharp/wing_sharp.msh";
 
 struct Curved {
     mesh: Mesh,
@@ -24,20 +25,21 @@ struct Curved {
 /// The wing at P2 with so many layers.
 fn curved(folder: &Path, layers: &str) -> Curved {
     let [out, report] = [folder.join("wing.msh"), folder.join("wing.json")];
-    let mut command = Command::new(env!("CARGO_BIN_EXE_sagitta"));
-    command.args(["curve", LINEAR, "--cad", "fixtures/wing_sharp/wing_sharp.step", "--order", "2", "--quiet"]);
-    command.args(["--curve-layers", layers, "-o"]).arg(&out).arg("--report").arg(&report);
-    let done = command.output().unwrap();
-    let code = done.status.code().unwrap();
-    assert!([0, 3].contains(&code), "{layers} layers: {}", String::from_utf8_lossy(&done.stdout));
-    let report: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(report).unwrap()).unwrap();
+    let [linear, cad] = ["msh", "step"].map(|extension| fixture("wing_sharp", extension));
+    let outputs = args!["-o", out, "--report", report];
+    let options = args!["curve", linear, "--cad", cad, "--order", "2", "--quiet", "--curve-layers", layers];
+    let done = sagitta(options.iter().chain(&outputs));
+    let code = done.code.unwrap();
+    assert!([0, 3].contains(&code), "{layers} layers: {}", done.stdout);
+    let report = json(&report);
     let told = report["cells"].as_array().unwrap().iter().map(|cell| cell["straight"].as_u64().unwrap()).sum();
     Curved { mesh: formats::read(&out).unwrap(), told, code }
 }
 
 /// Straight places, by the tags of the nodes.
 fn straight_places() -> Vec<DVec3> {
-    let elevated = elevate(&formats::read(Path::new(LINEAR)).unwrap(), Order::new(2).unwrap()).unwrap().mesh;
+    let elevated =
+        elevate(&formats::read(&fixture("wing_sharp", "msh")).unwrap(), Order::new(2).unwrap()).unwrap().mesh;
     let mut places = vec![DVec3::NAN; 1 + *elevated.node_tags.iter().max().unwrap() as usize];
     for (tag, point) in elevated.node_tags.iter().zip(&elevated.points) {
         places[*tag as usize] = *point;

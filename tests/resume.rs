@@ -1,16 +1,21 @@
 //! A run that goes on from a checkpoint ends in the same bytes as one that was never interrupted.
 #![allow(clippy::unwrap_used)]
 
+#[macro_use]
+mod common;
+
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 
-/// The weeble at P2, with work enough for several rounds.
-fn curve(out: &Path, max_sweeps: &str, more: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_sagitta"));
-    command.args(["curve", "fixtures/weeble/weeble.msh", "--cad", "fixtures/weeble/weeble.step", "--order", "2"]);
-    command.args(["--threshold", "0.97", "--max-sweeps", max_sweeps, "--quiet", "-o"]).arg(out).args(more);
-    command.output().unwrap()
+use common::{Outcome, fixture, json, sagitta};
+
+/// The weeble, with work enough for several rounds.
+fn curve(out: &Path, order: &str, max_sweeps: &str, more: &[&str]) -> Outcome {
+    let [mesh, cad] = ["msh", "step"].map(|extension| fixture("weeble", extension));
+    let options =
+        args!["curve", mesh, "--cad", cad, "--order", order, "--threshold", "0.97", "--max-sweeps", max_sweeps];
+    let quiet = args!["--quiet", "-o", out];
+    sagitta(options.into_iter().chain(quiet).chain(more.iter().map(Into::into)))
 }
 
 fn text(path: &Path) -> &str {
@@ -23,15 +28,36 @@ fn both_engines_go_on_to_the_same_bytes() {
     let file = |name: &str| folder.path().join(name);
     for engine in ["quasi-newton", "gradient"] {
         let [whole, first, second, state] = ["whole.msh", "first.msh", "second.msh", "state"].map(file);
-        assert_eq!(curve(&whole, "45", &["--engine", engine]).status.code(), Some(0));
+        curve(&whole, "2", "45", &["--engine", engine]).expect(0);
         // The first part gets no farther than the rounds before its last sweep: what it writes itself does not count.
-        curve(&first, "25", &["--engine", engine, "--checkpoint", text(&state), "--checkpoint-every", "1"]);
-        let resumed = curve(&second, "45", &["--engine", engine, "--resume", text(&state)]);
-        assert_eq!(resumed.status.code(), Some(0), "{}", String::from_utf8_lossy(&resumed.stderr));
+        curve(&first, "2", "25", &["--engine", engine, "--checkpoint", text(&state), "--checkpoint-every", "1"]);
+        curve(&second, "2", "45", &["--engine", engine, "--resume", text(&state)]).expect(0);
         let bytes = |path: &Path| fs::read(path).unwrap();
         assert!(bytes(&first) != bytes(&whole), "{engine}: the first part left nothing to do");
         assert!(bytes(&second) == bytes(&whole), "{engine}: other bytes than without interruption");
     }
+}
+
+/// A checkpoint of P3 leads on without P2; one of P2 leads through P3.
+#[test]
+fn order_by_order_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    let [whole, second, report, high, low] = ["whole.msh", "second.msh", "report.json", "high", "low"].map(file);
+    let keep = |out: &Path, order: &str, state: &Path| {
+        curve(out, order, "25", &["--checkpoint", text(state), "--checkpoint-every", "20"]).expect(0);
+    };
+    keep(&second, "2", &low);
+    keep(&whole, "3", &high);
+    let bytes = |path: &Path| fs::read(path).unwrap();
+    for (state, orders_below) in [(&high, 0), (&low, 1)] {
+        curve(&second, "3", "25", &["--resume", text(state), "--report", text(&report)]).expect(0);
+        assert!(bytes(&second) == bytes(&whole), "{}: other bytes than without interruption", state.display());
+        let gone_through = &json(&report)["smoothing"]["lower_orders"];
+        assert_eq!(gone_through.as_array().unwrap().len(), orders_below, "{gone_through}");
+    }
+    let direct = curve(&second, "3", "25", &["--direct", "--resume", text(&high)]);
+    assert_refused(&direct, &high, "belongs to other work");
 }
 
 #[test]
@@ -39,7 +65,7 @@ fn what_is_no_checkpoint_of_this_work_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str| folder.path().join(name);
     let [out, state, bad] = ["out.msh", "state", "bad"].map(file);
-    curve(&out, "45", &["--checkpoint", text(&state), "--checkpoint-every", "1"]);
+    curve(&out, "2", "45", &["--checkpoint", text(&state), "--checkpoint-every", "1"]);
     fs::remove_file(&out).unwrap();
     let good = fs::read(&state).unwrap();
     let mut flipped = good.clone();
@@ -56,18 +82,18 @@ fn what_is_no_checkpoint_of_this_work_is_refused() {
     ];
     for (bytes, expected) in spoilt {
         fs::write(&bad, bytes).unwrap();
-        assert_refused(&curve(&out, "45", &["--resume", text(&bad)]), &bad, expected);
+        assert_refused(&curve(&out, "2", "45", &["--resume", text(&bad)]), &bad, expected);
         assert!(!out.exists());
     }
     for more in [["--alpha", "0.5"], ["--survey-factor", "3"], ["--curve-layers", "5"]] {
-        let resumed = curve(&out, "45", &[&["--resume", text(&state)][..], &more].concat());
+        let resumed = curve(&out, "2", "45", &[&["--resume", text(&state)][..], &more].concat());
         assert_refused(&resumed, &state, "belongs to other work");
     }
-    assert_refused(&curve(&out, "45", &["--resume", text(&file("none"))]), &file("none"), "cannot be read");
+    assert_refused(&curve(&out, "2", "45", &["--resume", text(&file("none"))]), &file("none"), "cannot be read");
 }
 
-fn assert_refused(output: &Output, file: &Path, expected: &str) {
-    let told = String::from_utf8(output.stderr.clone()).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{told}");
+fn assert_refused(outcome: &Outcome, file: &Path, expected: &str) {
+    let told = &outcome.stderr;
+    assert_eq!(outcome.code, Some(2), "{told}");
     assert!(told.contains(expected) && told.contains(text(file)), "{expected}: {told}");
 }

@@ -1,20 +1,22 @@
 //! Sliding nodes on walls: where a curved rim bends into the wall's own triangles, layers must give way as whole columns.
 #![allow(clippy::unwrap_used)]
 
-use std::process::Command;
+#[macro_use]
+mod common;
+
+use common::{fixture, json, number, sagitta};
 
 /// The dish with a hole of six edges (`fixtures/make_dish.py`): least `C_JAC`, and the farthest point of its wall from the CAD.
 fn curve(order: &str, more: &[&str]) -> (f64, f64) {
     let folder = tempfile::tempdir().unwrap();
     let [out, report] = ["dish.msh", "dish.json"].map(|name| folder.path().join(name));
-    let mut command = Command::new(env!("CARGO_BIN_EXE_sagitta"));
-    command.args(["curve", "fixtures/dish/dish.msh", "--cad", "fixtures/dish/dish.step", "--quiet", "--order", order]);
-    let done = command.args(more).arg("-o").arg(&out).arg("--report").arg(&report).output().unwrap();
-    assert_eq!(done.status.code(), Some(0), "{}", String::from_utf8_lossy(&done.stderr));
-    let report: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(report).unwrap()).unwrap();
+    let [mesh, cad] = ["msh", "step"].map(|extension| fixture("dish", extension));
+    let options = args!["curve", mesh, "--cad", cad, "--quiet", "--order", order, "-o", out, "--report", report];
+    sagitta(options.into_iter().chain(more.iter().map(Into::into))).expect(0);
+    let report = json(&report);
     let patches = report["patches"].as_array().unwrap();
     let dish = patches.iter().find(|patch| patch["names"][0] == "dish").unwrap();
-    (report["smoothing"]["end"]["c_jac"].as_f64().unwrap(), dish["farthest"].as_f64().unwrap())
+    (number(&report, "/smoothing/end/c_jac"), number(dish, "/farthest"))
 }
 
 #[test]

@@ -38,7 +38,7 @@ fn an_interrupt_ends_smoothing() {
     let out = folder.path().join("weeble.msh");
     let mut child = curve(&out, &[]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
-    assert!(lines.any(|line| line.unwrap().contains("] smooth: ")), "a sweep is told before it ends");
+    assert!(lines.any(|line| line.unwrap().contains("] smooth P2: ")), "a sweep is told before it ends");
     assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
     lines.for_each(drop);
     let mut told = String::new();
