@@ -64,6 +64,28 @@ pub(crate) struct Level {
     pub(crate) smoothed: Smoothed,
 }
 
+/// What the way up led to.
+pub(crate) struct Climb {
+    /// The mesh at the order asked for.
+    pub(crate) level: Level,
+    /// The mesh at the highest order below at which no element is inverted.
+    pub(crate) below: Option<Level>,
+    /// What was done at the orders below.
+    pub(crate) lower_orders: Vec<LowerOrder>,
+}
+
+impl Level {
+    /// Its order.
+    pub(crate) fn order(&self) -> Order {
+        self.ready.elevated.mesh.order
+    }
+
+    /// What moved each node of the straight mesh `above`, of a higher order, if its elements are those of this level.
+    pub(crate) fn raised(&self, above: &Mesh) -> Vec<DVec3> {
+        raise(&self.ready.elevated.mesh, &self.places, above)
+    }
+}
+
 /// The way up to the order asked for.
 pub(crate) struct Ascent<'a> {
     job: &'a Job,
@@ -86,28 +108,31 @@ impl<'a> Ascent<'a> {
         Ok(Ascent { job, linear, boundary, association, found })
     }
 
-    /// Goes up to the order asked for; tells what was done at those below.
-    pub(crate) fn climb(mut self, clock: &mut Clock) -> Result<(Level, Vec<LowerOrder>), PipelineError> {
+    /// Goes up to the order asked for.
+    pub(crate) fn climb(mut self, clock: &mut Clock) -> Result<Climb, PipelineError> {
         let mut below: Option<Level> = None;
-        let mut lower = Vec::new();
+        let mut lower_orders = Vec::new();
         let direct = self.job.direct || self.job.smoothing.engine == Engine::Gradient;
         let between = |order: &Order| *order > Order::LINEAR && *order < self.job.order && !direct;
         for order in Order::all().filter(between).collect::<Vec<_>>() {
-            if below.as_ref().is_some_and(|level| level.smoothed.stopped) {
-                break;
-            }
             let ready = self.ready(order, clock)?;
             if self.found.as_ref().is_some_and(|found| found.nodes() > ready.elevated.mesh.points.len()) {
                 continue; // this order was done when the checkpoint was kept
             }
             let level = self.level(ready, below.as_ref(), clock)?;
-            let Smoothed { sweeps, start, end, .. } = level.smoothed;
-            lower.push(LowerOrder { order, sweeps, start, end });
-            below = Some(level);
+            let Smoothed { sweeps, stopped, start, end, .. } = level.smoothed;
+            lower_orders.push(LowerOrder { order, sweeps, start, end });
+            if end.inverted == 0 {
+                below = Some(level);
+            }
+            if stopped {
+                break;
+            }
         }
         let ready = self.ready(self.job.order, clock)?;
         self.linear = Mesh::default(); // it was needed for the last time
-        Ok((self.level(ready, below.as_ref(), clock)?, lower))
+        let level = self.level(ready, below.as_ref(), clock)?;
+        Ok(Climb { level, below, lower_orders })
     }
 
     /// Elevates and projects.
@@ -156,12 +181,12 @@ impl<'a> Ascent<'a> {
     fn start(&self, ready: &Ready, below: Option<&Level>) -> Vec<DVec3> {
         let Ready { elevated, ties, projected, .. } = ready;
         let carried = |projected: &Projected| perturb(elevated, self.boundary, self.association, projected, ties);
-        let Some(below) = below.filter(|below| below.smoothed.end.inverted == 0) else {
+        let Some(below) = below else {
             let mut places = carried(projected);
             ties.apply(&mut places);
             return places;
         };
-        let raised = raise(&below.ready.elevated.mesh, &below.places, &elevated.mesh);
+        let raised = below.raised(&elevated.mesh);
         let mut rest = projected.clone();
         for (displacement, raised) in rest.displacement.iter_mut().zip(&raised) {
             *displacement -= *raised;

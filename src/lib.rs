@@ -47,7 +47,7 @@ pub mod cli;
 pub mod element;
 pub mod elevate;
 pub mod formats;
-pub mod ladder;
+mod ladder;
 pub mod layers;
 pub mod mesh;
 pub mod periodic;

@@ -31,7 +31,7 @@ use cad::{Model, ReadOptions};
 use glam::DVec3;
 
 pub use crate::ascent::LowerOrder;
-use crate::ascent::{Ascent, Level, Ready};
+use crate::ascent::{Ascent, Climb, Level, Ready};
 use crate::associate::{
     self, AssociateError, Association, Boundary, Choice, Host, LinkageError, Summary, TieError, UnknownPatch,
 };
@@ -257,7 +257,7 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
     linear.periodic.extend(tied.claims.periodic.into_iter().filter(|pair| !known.contains(&pair.slave)));
 
     let ascent = Ascent::new(job, linear, &boundary, &association)?;
-    let (level, lower_orders) = ascent.climb(&mut clock)?;
+    let Climb { level, below, lower_orders } = ascent.climb(&mut clock)?;
     let Level { ready: Ready { mut elevated, ties, mut projected, notes }, places, mut smoothed } = level;
     association.notes.extend(notes);
 
@@ -271,6 +271,7 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
         settings: &job.smoothing,
         freeze_walls: job.freeze_walls,
         freeze_linear: job.freeze_linear,
+        below,
     };
     let Climbed { given_up, certificate, straight } =
         ladder.climb(places, &mut smoothed, |progress| clock.observer.progress(&progress));

@@ -1,8 +1,8 @@
 //! Where elements stay invalid: the displacement of the nodes around them is taken back, just as far as it must be.
 //!
 //! Each round halves the displacement of all nodes of the elements that are not proven valid (below an eighth it is taken
-//! back whole) and of their neighbours, and certifies what that touches. A straight mesh is the linear mesh, which was
-//! certified when it was read, so the rounds end in a valid mesh; every wall face that is no longer on the CAD is listed.
+//! back whole) and of their neighbours, and certifies what that touches. What is gone back to is a valid mesh, the curved mesh of a
+//! lower order or the straight one, so the rounds end in a valid mesh; every wall face that is no longer on the CAD is listed.
 
 use glam::DVec3;
 
@@ -17,21 +17,32 @@ const LEAST_SHARE: f64 = 0.125;
 /// More rounds than it takes to straighten any patch that fits a mesh.
 const MOST_ROUNDS: usize = 1000;
 
+/// A valid mesh to go back to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fallback {
+    /// Its order: linear where it is straight.
+    pub order: Order,
+    /// Places of all nodes.
+    pub places: Vec<DVec3>,
+}
+
 /// A boundary face that was taken off the CAD so that the elements behind it are valid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GivenUp {
     /// Its index in [`Boundary::faces`].
     pub face: usize,
-    /// The share of its displacement that is left, 0 to 1: the least of its nodes.
+    /// The share of its displacement from the fallback that is left, 0 to 1: the least of its nodes.
     pub share: f64,
+    /// Order of the fallback.
+    pub order: Order,
 }
 
-/// Takes displacements back until every element is proven valid; returns the faces given up and the certificate.
+/// Takes displacements back until every element is proven valid; `linear` are the places of the linear nodes. Returns the faces given up and the certificate.
 #[must_use]
 pub fn retreat(
     mesh: &mut Mesh,
-    straight: &[DVec3],
-    linear_nodes: usize,
+    fallback: &Fallback,
+    linear: &[DVec3],
     boundary: &Boundary,
     association: &Association,
     ties: &Ties,
@@ -48,19 +59,19 @@ pub fn retreat(
         let touched = take_back(mesh, ties, &failing, &mut shares);
         for (n, &share) in shares.iter().enumerate() {
             if share < 1.0 {
-                mesh.points[n] = straight[n] + (curved[n] - straight[n]) * share;
+                mesh.points[n] = fallback.places[n].lerp(curved[n], share);
             }
         }
         ties.apply(&mut mesh.points);
-        let subset = Subset { whole: MeshElements::new(mesh, Some(&straight[..linear_nodes])), elements: &touched };
+        let subset = Subset { whole: MeshElements::new(mesh, Some(linear)), elements: &touched };
         let outcome = certify::certify(&subset, &settings);
         failing = outcome.failures.iter().map(|judged| touched[judged.element]).collect();
         if failing.is_empty() {
             break;
         }
     }
-    let certificate = certify::mesh(mesh, Some(&straight[..linear_nodes]), &settings);
-    (given_up(mesh, boundary, association, &shares), certificate)
+    let certificate = certify::mesh(mesh, Some(linear), &settings);
+    (given_up(mesh, boundary, association, &shares, fallback.order), certificate)
 }
 
 /// Halves the shares around failing elements; returns all elements that have a node with a changed share.
@@ -80,7 +91,13 @@ fn take_back(mesh: &Mesh, ties: &Ties, failing: &[usize], shares: &mut [f64]) ->
 }
 
 /// The faces tied to the CAD that have a node with less than its whole displacement.
-pub(crate) fn given_up(mesh: &Mesh, boundary: &Boundary, association: &Association, shares: &[f64]) -> Vec<GivenUp> {
+pub(crate) fn given_up(
+    mesh: &Mesh,
+    boundary: &Boundary,
+    association: &Association,
+    shares: &[f64],
+    order: Order,
+) -> Vec<GivenUp> {
     let mut faces = Vec::new();
     for (face, own) in boundary.faces.iter().enumerate() {
         let block = &mesh.blocks[own.block];
@@ -88,7 +105,7 @@ pub(crate) fn given_up(mesh: &Mesh, boundary: &Boundary, association: &Associati
         let nodes = &block.nodes[own.element * stride..][..stride];
         let share = nodes.iter().map(|n| shares[n.index()]).fold(1.0, f64::min);
         if share < 1.0 && matches!(association.faces[face], Host::Surface(_)) {
-            faces.push(GivenUp { face, share });
+            faces.push(GivenUp { face, share, order });
         }
     }
     faces

@@ -10,7 +10,7 @@ use sagitta::element::Order;
 use sagitta::elevate::elevate;
 use sagitta::formats;
 use sagitta::periodic::Ties;
-use sagitta::retreat::retreat;
+use sagitta::retreat::{Fallback, retreat};
 
 #[test]
 fn displacements_are_taken_back_until_every_element_is_valid() {
@@ -28,8 +28,9 @@ fn displacements_are_taken_back_until_every_element_is_valid() {
 
     let first = certify::mesh(&mesh, Some(&straight[..linear_nodes]), &Settings::default());
     assert!(!first.holds(), "the case must be broken to begin with");
+    let fallback = Fallback { order: Order::LINEAR, places: straight.clone() };
     let (given_up, certificate) =
-        retreat(&mut mesh, &straight, linear_nodes, &boundary, &association, &Ties::default(), first);
+        retreat(&mut mesh, &fallback, &straight[..linear_nodes], &boundary, &association, &Ties::default(), first);
 
     assert!(certificate.holds());
     assert!(certify::mesh(&mesh, None, &Settings::default()).holds(), "the mesh that is handed back is the valid one");
@@ -49,8 +50,8 @@ fn a_valid_mesh_is_left_alone() {
     let boundary = Boundary::new(&linear);
     let (given_up, _) = retreat(
         &mut mesh,
-        &straight,
-        elevated.linear_nodes,
+        &Fallback { order: Order::LINEAR, places: straight.clone() },
+        &straight[..elevated.linear_nodes],
         &boundary,
         &Association::default(),
         &Ties::default(),
@@ -76,7 +77,9 @@ fn both_sides_of_a_periodic_pair_retreat_alike() {
     ties.apply(&mut mesh.points);
     let first = certify::mesh(&mesh, Some(&straight[..linear_nodes]), &Settings::default());
     assert!(!first.holds(), "the case must be broken to begin with");
-    let (_, certificate) = retreat(&mut mesh, &straight, linear_nodes, &boundary, &association, &ties, first);
+    let fallback = Fallback { order: Order::LINEAR, places: straight.clone() };
+    let linear = &straight[..linear_nodes];
+    let (_, certificate) = retreat(&mut mesh, &fallback, linear, &boundary, &association, &ties, first);
     assert!(certificate.holds());
     assert!(mesh.points[master.index()] != straight[master.index()] + DVec3::splat(0.4));
     assert!(ties.farthest(&mesh.points) < 1e-14, "{:e}", ties.farthest(&mesh.points));

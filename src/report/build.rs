@@ -161,6 +161,7 @@ fn given_up(curved: &Curved, given: &GivenUp) -> GivenUpFace {
     GivenUpFace {
         element: curved.mesh.blocks[face.block].tags[face.element],
         entity: face.entity.to_string(),
+        order: given.order.get(),
         share: given.share,
         place: middle.to_array(),
     }

@@ -134,7 +134,9 @@ pub struct GivenUpFace {
     pub element: u64,
     /// The mesh entity that it belongs to.
     pub entity: String,
-    /// The share of its displacement that is left, 0 to 1.
+    /// What it went back to: order 1 is the straight face, a higher one the face curved at that order.
+    pub order: usize,
+    /// The share of its displacement from there that is left, 0 to 1.
     pub share: f64,
     /// Its middle.
     pub place: [f64; 3],

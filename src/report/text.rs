@@ -97,11 +97,11 @@ impl Report {
         for face in self.given_up.iter().take(LISTED) {
             let [x, y, z] = face.place;
             let percent = 100.0 * face.share;
-            writeln!(
-                f,
-                "  face {} of {}: {percent:.0} % of its curve, near ({x:.6}, {y:.6}, {z:.6})",
-                face.element, face.entity
-            )?;
+            let kept = match face.order {
+                1 => format!("{percent:.0} % of its curve"),
+                order => format!("its curve of P{order}, and {percent:.0} % of the way to that of P{}", self.order),
+            };
+            writeln!(f, "  face {} of {}: {kept}, near ({x:.6}, {y:.6}, {z:.6})", face.element, face.entity)?;
         }
         Ok(())
     }
