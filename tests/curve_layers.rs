@@ -1,5 +1,5 @@
 //! `--curve-layers N`: elements beyond N layers off the curved walls keep their straight places, and are told of.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 #[macro_use]
 mod common;

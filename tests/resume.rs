@@ -1,5 +1,5 @@
 //! A run that goes on from a checkpoint ends in the same bytes as one that was never interrupted.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 #[macro_use]
 mod common;

@@ -1,5 +1,5 @@
 //! Sliding nodes on walls: where a curved rim bends into the wall's own triangles, layers must give way as whole columns.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 #[macro_use]
 mod common;
