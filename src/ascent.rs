@@ -21,10 +21,10 @@ use glam::DVec3;
 
 use crate::associate::{Association, Boundary, Host};
 use crate::checkpoint::{CheckpointError, Found};
-use crate::element::{Order, basis};
+use crate::element::{Cell, Order, basis};
 use crate::elevate::{Elevated, elevate};
 use crate::layers::leave_straight_beyond;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, NodeId};
 use crate::periodic::Ties;
 use crate::perturb::perturb;
 use crate::pipeline::{Clock, Job, PipelineError, Step, Told};
@@ -69,20 +69,27 @@ pub(crate) struct Climb {
     /// The mesh at the order asked for.
     pub(crate) level: Level,
     /// The mesh at the highest order below at which no element is inverted.
-    pub(crate) below: Option<Level>,
+    pub(crate) below: Option<Below>,
     /// What was done at the orders below.
     pub(crate) lower_orders: Vec<LowerOrder>,
 }
 
-impl Level {
+/// The curved mesh of a lower order: what it takes to go on from it.
+pub(crate) struct Below {
     /// Its order.
-    pub(crate) fn order(&self) -> Order {
-        self.ready.elevated.mesh.order
-    }
+    pub(crate) order: Order,
+    /// Cell kind and nodes of each block's elements.
+    blocks: Vec<(Cell, Vec<NodeId>)>,
+    /// What moved each node from its straight place.
+    moved: Vec<DVec3>,
+}
 
-    /// What moved each node of the straight mesh `above`, of a higher order, if its elements are those of this level.
-    pub(crate) fn raised(&self, above: &Mesh) -> Vec<DVec3> {
-        raise(&self.ready.elevated.mesh, &self.places, above)
+impl From<Level> for Below {
+    fn from(level: Level) -> Below {
+        let Level { ready: Ready { elevated: Elevated { mesh, .. }, .. }, mut places, .. } = level;
+        places.iter_mut().zip(&mesh.points).for_each(|(place, straight)| *place -= *straight);
+        let blocks = mesh.blocks.into_iter().map(|block| (block.cell, block.nodes)).collect();
+        Below { order: mesh.order, blocks, moved: places }
     }
 }
 
@@ -110,7 +117,7 @@ impl<'a> Ascent<'a> {
 
     /// Goes up to the order asked for.
     pub(crate) fn climb(mut self, clock: &mut Clock) -> Result<Climb, PipelineError> {
-        let mut below: Option<Level> = None;
+        let mut below: Option<Below> = None;
         let mut lower_orders = Vec::new();
         let direct = self.job.direct || self.job.smoothing.engine == Engine::Gradient;
         let between = |order: &Order| *order > Order::LINEAR && *order < self.job.order && !direct;
@@ -123,7 +130,7 @@ impl<'a> Ascent<'a> {
             let Smoothed { sweeps, stopped, start, end, .. } = level.smoothed;
             lower_orders.push(LowerOrder { order, sweeps, start, end });
             if end.inverted == 0 {
-                below = Some(level);
+                below = Some(level.into());
             }
             if stopped {
                 break;
@@ -154,7 +161,7 @@ impl<'a> Ascent<'a> {
     }
 
     /// Carries the volume along and smooths, or goes on from the checkpoint.
-    fn level(&mut self, ready: Ready, below: Option<&Level>, clock: &mut Clock) -> Result<Level, PipelineError> {
+    fn level(&mut self, ready: Ready, below: Option<&Below>, clock: &mut Clock) -> Result<Level, PipelineError> {
         let straight = &ready.elevated.mesh.points;
         let problem = Problem::new(&ready.elevated.mesh, straight);
         let work = self.job.work(&problem, straight, &ready.projected.displacement);
@@ -178,7 +185,7 @@ impl<'a> Ascent<'a> {
     }
 
     /// Where the nodes are before the first sweep.
-    fn start(&self, ready: &Ready, below: Option<&Level>) -> Vec<DVec3> {
+    fn start(&self, ready: &Ready, below: Option<&Below>) -> Vec<DVec3> {
         let Ready { elevated, ties, projected, .. } = ready;
         let carried = |projected: &Projected| perturb(elevated, self.boundary, self.association, projected, ties);
         let Some(below) = below else {
@@ -206,31 +213,33 @@ impl<'a> Ascent<'a> {
     }
 }
 
-/// What moved each node of the mesh `above`: the displacement of the mesh `below`, of a lower order, from its straight places.
-fn raise(below: &Mesh, places: &[DVec3], above: &Mesh) -> Vec<DVec3> {
-    let moved: Vec<DVec3> = places.iter().zip(&below.points).map(|(place, straight)| *place - *straight).collect();
-    let mut displacement = vec![DVec3::ZERO; above.points.len()];
-    for (high, low) in above.blocks.iter().zip(&below.blocks) {
-        let mut weights = basis::at_lattice(high.cell, below.order, above.order);
-        weights.iter_mut().flatten().filter(|w| w.abs() < NOTHING).for_each(|w| *w = 0.0);
-        for (high, low) in high.elements(above.order).zip(low.elements(below.order)) {
-            if low.iter().all(|n| moved[n.index()] == DVec3::ZERO) {
-                continue;
-            }
-            for (node, weights) in high.iter().zip(&weights) {
-                displacement[node.index()] = low.iter().zip(weights).map(|(n, &w)| moved[n.index()] * w).sum();
+impl Below {
+    /// What moved each node of the straight mesh `above`, of a higher order and with the same elements.
+    pub(crate) fn raised(&self, above: &Mesh) -> Vec<DVec3> {
+        let mut raised = vec![DVec3::ZERO; above.points.len()];
+        for (high, (cell, low)) in above.blocks.iter().zip(&self.blocks) {
+            let mut weights = basis::at_lattice(*cell, self.order, above.order);
+            weights.iter_mut().flatten().filter(|w| w.abs() < NOTHING).for_each(|w| *w = 0.0);
+            let low = low.chunks_exact(cell.node_count(self.order));
+            for (high, low) in high.elements(above.order).zip(low) {
+                if low.iter().all(|n| self.moved[n.index()] == DVec3::ZERO) {
+                    continue;
+                }
+                for (node, weights) in high.iter().zip(&weights) {
+                    raised[node.index()] = low.iter().zip(weights).map(|(n, &w)| self.moved[n.index()] * w).sum();
+                }
             }
         }
+        raised
     }
-    displacement
 }
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use crate::element::{Cell, bernstein};
-    use crate::mesh::{Block, EntityKey, NodeId};
+    use crate::element::bernstein;
+    use crate::mesh::{Block, EntityKey};
 
     /// One element of a kind, at its unit corners.
     fn alone(cell: Cell) -> Mesh {
@@ -242,6 +251,13 @@ mod tests {
         Mesh { points, node_tags, node_entities, blocks: vec![block], ..Mesh::default() }
     }
 
+    /// A curved mesh from its straight one.
+    fn lower(straight: &Mesh, places: &[DVec3]) -> Below {
+        let blocks = straight.blocks.iter().map(|block| (block.cell, block.nodes.clone())).collect();
+        let moved = places.iter().zip(&straight.points).map(|(place, straight)| *place - *straight).collect();
+        Below { order: straight.order, blocks, moved }
+    }
+
     #[test]
     fn a_raised_element_is_the_same_polynomial() {
         for cell in Cell::VOLUME {
@@ -251,7 +267,7 @@ mod tests {
                     // Bent at every node, differently.
                     let bend = |(n, x): (usize, &DVec3)| *x + DVec3::new(0.1, -0.07, 0.05) * (1.0 + n as f64).sin();
                     let places: Vec<DVec3> = below.points.iter().enumerate().map(bend).collect();
-                    let moved = raise(&below, &places, &above);
+                    let moved = lower(&below, &places).raised(&above);
                     let raised: Vec<DVec3> = above.points.iter().zip(&moved).map(|(x, d)| *x + *d).collect();
                     let place = |mesh: &Mesh, places: &[DVec3], at: [f64; 3]| -> DVec3 {
                         let values = basis::values(cell, mesh.order, at);
@@ -273,7 +289,7 @@ mod tests {
         let [below, above] = [2, 3].map(|p| elevate(&alone(Cell::Tet), order(p)).unwrap().mesh);
         let mut places = below.points.clone();
         places[9] += DVec3::splat(0.1); // the middle of the edge 2-3
-        let moved = raise(&below, &places, &above);
+        let moved = lower(&below, &places).raised(&above);
         let on_face = |x: &DVec3| x.y == 0.0 || x.z == 0.0; // faces without that edge
         let still = above.points.iter().zip(&moved).filter(|(x, _)| on_face(x));
         assert!(still.clone().count() > 10);

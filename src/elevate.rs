@@ -5,9 +5,13 @@
 //! lies in) is first met, entities of low dimension first, so that it is classified on the lowest one that holds it.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
-use crate::element::{Cell, Order, basis, canonical, interior_count, interior_slots, interior_start};
+use crate::element::{Cell, InteriorSlots, Order, basis, canonical, interior_start};
 use crate::mesh::{Block, EntityKey, Mesh, NodeId, TooMany};
+
+/// Carriers whose new nodes are placed at a time: what they take while they wait does not grow with the mesh.
+const BATCH: usize = 1 << 16;
 
 /// An elevated mesh and where its new nodes came from.
 #[derive(Clone, Debug)]
@@ -76,6 +80,12 @@ impl Carriers {
         Carriers { cell, corners: Vec::new(), first: Vec::new(), weights }
     }
 
+    /// Number of new nodes inside each.
+    #[must_use]
+    pub fn inside(&self) -> usize {
+        self.weights.len()
+    }
+
     /// Number of carriers.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -117,12 +127,13 @@ pub fn elevate(linear: &Mesh, order: Order) -> Result<Elevated, TooMany> {
     let mut boundary_nodes = linear.points.len();
     for dimension in 0..=3 {
         if dimension == 3 {
-            boundary_nodes = builder.mesh.points.len();
+            boundary_nodes = builder.mesh.node_tags.len();
         }
         for (place, block) in linear.blocks_of(dimension) {
             blocks[place] = Some(builder.block(block)?);
         }
     }
+    builder.place();
     let mut mesh = builder.mesh;
     mesh.blocks = blocks.into_iter().flatten().collect();
     Ok(Elevated { mesh, linear_nodes: linear.points.len(), boundary_nodes, carriers: builder.carriers })
@@ -136,6 +147,7 @@ struct Builder {
     linear_nodes: usize,
     /// The carriers that several elements share: edges, triangles and quadrilaterals.
     chains: [Chains; Cell::ALL.len()],
+    slots: [InteriorSlots; Cell::ALL.len()],
 }
 
 impl Builder {
@@ -156,8 +168,8 @@ impl Builder {
         };
         let next_tag = linear.node_tags.iter().max().map_or(1, |tag| tag + 1);
         let carriers = Cell::ALL.iter().map(|&cell| Carriers::new(cell, order)).collect();
-        let (linear_nodes, chains) = (linear.points.len(), Default::default());
-        Builder { order, mesh, next_tag, carriers, linear_nodes, chains }
+        let (linear_nodes, chains, slots) = (linear.points.len(), Default::default(), Default::default());
+        Builder { order, mesh, next_tag, carriers, linear_nodes, chains, slots }
     }
 
     fn block(&mut self, linear: &Block) -> Result<Block, TooMany> {
@@ -188,11 +200,10 @@ impl Builder {
             }
             self.shared(face.cell, &seen[..face.corners.len()], entity, nodes)?;
         }
-        if cell.dimension() == 3 {
-            let count = interior_count(cell, self.order);
-            if count > 0 {
-                let first = self.create(cell, corners, entity)?;
-                nodes.extend(self.run(first, count)?);
+        if cell.dimension() == 3 && self.carriers[cell as usize].inside() > 0 {
+            let first = self.create(cell, corners, entity)?;
+            for node in first.index()..first.index() + self.carriers[cell as usize].inside() {
+                nodes.push(NodeId::new(node)?);
             }
         }
         Ok(())
@@ -206,8 +217,7 @@ impl Builder {
         entity: EntityKey,
         nodes: &mut Vec<NodeId>,
     ) -> Result<(), TooMany> {
-        let count = interior_count(cell, self.order);
-        if count == 0 {
+        if self.carriers[cell as usize].inside() == 0 {
             return Ok(());
         }
         let seen = canonical(corners);
@@ -224,31 +234,46 @@ impl Builder {
                 first
             }
         };
-        for slot in interior_slots(cell, self.order, seen) {
+        for slot in self.slots[cell as usize].of(cell, self.order, seen) {
             nodes.push(NodeId::new(first.index() + slot)?);
         }
         Ok(())
     }
 
-    fn run(&self, first: NodeId, count: usize) -> Result<Vec<NodeId>, TooMany> {
-        (first.index()..first.index() + count).map(NodeId::new).collect()
-    }
-
-    /// Makes a carrier's new nodes at their straight places.
+    /// Makes a carrier's new nodes; their places are computed at the end.
     fn create(&mut self, cell: Cell, corners: &[NodeId], entity: EntityKey) -> Result<NodeId, TooMany> {
         let carriers = &mut self.carriers[cell as usize];
-        let first = NodeId::new(self.mesh.points.len())?;
-        NodeId::new(first.index() + carriers.weights.len())?;
+        let first = NodeId::new(self.mesh.node_tags.len())?;
+        NodeId::new(first.index() + carriers.inside())?;
         carriers.corners.extend_from_slice(corners);
         carriers.first.push(first);
-        for weights in &carriers.weights {
-            let point: DVec3 = corners.iter().zip(weights).map(|(n, &w)| self.mesh.points[n.index()] * w).sum();
-            self.mesh.points.push(point);
+        for _ in 0..carriers.inside() {
             self.mesh.node_tags.push(self.next_tag);
             self.mesh.node_entities.push(Some(entity));
             self.next_tag += 1;
         }
         Ok(first)
+    }
+
+    /// Puts all new nodes at their straight places.
+    fn place(&mut self) {
+        let points = &mut self.mesh.points;
+        points.resize(self.mesh.node_tags.len(), DVec3::ZERO);
+        for carriers in self.carriers.iter().filter(|carriers| carriers.inside() > 0) {
+            for begin in (0..carriers.len()).step_by(BATCH) {
+                let batch = begin..carriers.len().min(begin + BATCH);
+                let straight = |carrier: usize| {
+                    let (corners, _) = carriers.get(carrier);
+                    let at =
+                        |weights: &Vec<f64>| corners.iter().zip(weights).map(|(n, &w)| points[n.index()] * w).sum();
+                    carriers.weights.iter().map(at).collect::<Vec<DVec3>>()
+                };
+                let own: Vec<Vec<DVec3>> = batch.clone().into_par_iter().with_min_len(256).map(straight).collect();
+                for (carrier, own) in batch.zip(own) {
+                    points[carriers.first[carrier].index()..][..own.len()].copy_from_slice(&own);
+                }
+            }
+        }
     }
 }
 

@@ -13,7 +13,7 @@
 
 use glam::DVec3;
 
-use crate::ascent::Level;
+use crate::ascent::Below;
 use crate::associate::{Association, Boundary, Host};
 use crate::certify::{self, Certificate};
 use crate::element::Order;
@@ -51,7 +51,7 @@ pub(crate) struct Ladder<'a> {
     /// Hold linear nodes.
     pub freeze_linear: bool,
     /// The curved mesh of the order below.
-    pub below: Option<Level>,
+    pub below: Option<Below>,
 }
 
 /// What the ladder led to.
@@ -154,7 +154,7 @@ impl Ladder<'_> {
             places.iter_mut().zip(straight).for_each(|(place, straight)| *place += *straight);
             self.ties.apply(&mut places);
             if self.certified(&mut places).holds() {
-                return Fallback { order: below.order(), places };
+                return Fallback { order: below.order, places };
             }
         }
         Fallback { order: Order::LINEAR, places: straight.to_vec() }

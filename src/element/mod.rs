@@ -21,7 +21,7 @@ pub use cell::{Cell, Face, Order, OrderOutOfRange};
 pub use extension::interior_extension;
 pub use lattice::{edge_nodes, face_lattice, lattice};
 pub use net::Net;
-pub use orientation::{canonical, interior_count, interior_slots, interior_start, mirrored};
+pub use orientation::{InteriorSlots, canonical, interior_count, interior_slots, interior_start, mirrored};
 pub use samples::Samples;
 pub use subdivision::corner_tets;
 pub use volume::signed_volume;

@@ -41,6 +41,21 @@ pub fn interior_slots(cell: Cell, order: Order, seen: [u8; 4]) -> Vec<usize> {
         .collect()
 }
 
+/// [`interior_slots`] of one cell and order, each computed when it is first asked for.
+#[derive(Clone, Debug, Default)]
+pub struct InteriorSlots {
+    /// By the first two corners as they are seen: they tell the others.
+    known: [[Option<Vec<usize>>; 4]; 4],
+}
+
+impl InteriorSlots {
+    /// The slots for corners in the order `seen`; always of the same cell and order.
+    pub fn of(&mut self, cell: Cell, order: Order, seen: [u8; 4]) -> &[usize] {
+        let own = &mut self.known[usize::from(seen[0])][usize::from(seen[1])];
+        own.get_or_insert_with(|| interior_slots(cell, order, seen))
+    }
+}
+
 /// The nodes of an element with its first two axes exchanged: the same shape, turned the other way round.
 ///
 /// Slot `n` of the turned element holds node `mirrored[n]` of the given one.

@@ -161,7 +161,7 @@ fn carry_inside(
     follows: &(impl Fn(usize) -> bool + Sync),
     result: &mut [DVec3],
 ) {
-    let inside = |first: NodeId| first.index()..first.index() + carriers.weights().len();
+    let inside = |first: NodeId| first.index()..first.index() + carriers.inside();
     let own: Vec<Vec<DVec3>> = batch
         .clone()
         .into_par_iter()
