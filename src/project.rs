@@ -5,11 +5,14 @@
 //! the equispaced nodes of the chord instead bunches them where the wall leans away from the chord: at P4 the wall is then
 //! 2.6 times as far from the CAD.
 
+use std::iter::once;
+
 use cad::{EntityId, Evaluation, Foot, Group};
 use glam::DVec3;
+use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
-use crate::associate::{Association, Boundary, Host};
+use crate::associate::{Association, Boundary, BoundaryFace, Host};
 use crate::element::{Cell, Order, interior_count, interior_extension, interior_start};
 use crate::elevate::Elevated;
 use crate::mesh::NodeId;
@@ -79,6 +82,13 @@ pub fn project(elevated: &Elevated, boundary: &Boundary, association: &Associati
     projector.result
 }
 
+/// Places on the CAD, and how many closest points were asked for.
+struct Feet {
+    places: Vec<DVec3>,
+    projections: usize,
+    unproven: usize,
+}
+
 struct Projector<'a> {
     elevated: &'a Elevated,
     association: &'a Association,
@@ -91,27 +101,36 @@ impl Projector<'_> {
     }
 
     /// The feet of wishes on a host's group; planes and fixed places need no CAD.
-    fn feet(&mut self, host: Host, wishes: &[DVec3]) -> Vec<DVec3> {
-        match (host, self.association.plane_of(host), group_of(self.association, host)) {
+    fn feet(&self, host: Host, wishes: &[DVec3]) -> Feet {
+        let places = match (host, self.association.plane_of(host), group_of(self.association, host)) {
             (_, Some(plane), _) => wishes.iter().map(|&x| plane.closest(x)).collect(),
             (Host::Vertex(place), ..) => vec![place; wishes.len()],
             (_, _, Some(group)) => {
                 let feet: Vec<Foot> = wishes.iter().map(|&x| group.closest(x, None)).collect();
-                self.result.projections += feet.len();
-                self.result.unproven += feet.iter().filter(|f| !f.is_proven()).count();
-                feet.iter().map(|f| f.point).collect()
+                let unproven = feet.iter().filter(|f| !f.is_proven()).count();
+                return Feet { places: feet.iter().map(|f| f.point).collect(), projections: feet.len(), unproven };
             }
             _ => wishes.to_vec(),
+        };
+        Feet { places, projections: 0, unproven: 0 }
+    }
+
+    /// Takes the places of some nodes.
+    fn take(&mut self, nodes: impl Iterator<Item = usize>, feet: Feet) {
+        self.result.projections += feet.projections;
+        self.result.unproven += feet.unproven;
+        for (node, place) in nodes.zip(feet.places) {
+            self.result.displacement[node] = place - self.elevated.mesh.points[node];
         }
     }
 
     fn linear_nodes(&mut self) {
-        let boundary: Vec<usize> =
-            (0..self.elevated.linear_nodes).filter(|&n| self.association.nodes[n] != Host::Free).collect();
-        for n in boundary {
-            let x = self.elevated.mesh.points[n];
-            let place = self.feet(self.association.nodes[n], &[x])[0];
-            self.result.displacement[n] = place - x;
+        let hosts = &self.association.nodes;
+        let boundary: Vec<usize> = (0..self.elevated.linear_nodes).filter(|&n| hosts[n] != Host::Free).collect();
+        let own = |&n: &usize| self.feet(hosts[n], &[self.elevated.mesh.points[n]]);
+        let feet: Vec<Feet> = boundary.par_iter().map(own).collect();
+        for (n, feet) in boundary.into_iter().zip(feet) {
+            self.take(once(n), feet);
         }
     }
 
@@ -122,20 +141,22 @@ impl Projector<'_> {
         let on_boundary = carriers.iter().take_while(|(_, first)| first.index() < self.elevated.boundary_nodes);
         let known: FxHashMap<[NodeId; 2], NodeId> =
             on_boundary.map(|(ends, first)| ([ends[0], ends[1]], first)).collect();
-        for (edge, &ends) in boundary.edges.iter().enumerate() {
-            let (host, Some(&first)) = (self.association.edges[edge], known.get(&ends)) else { continue };
-            let places = self.spread(host, ends, order);
-            for (k, place) in (0..inner).zip(places) {
-                let node = first.index() + k;
+        let hosts = self.association.edges.iter().zip(&boundary.edges);
+        let edges: Vec<(Host, [NodeId; 2], usize)> =
+            hosts.filter_map(|(&host, ends)| known.get(ends).map(|first| (host, *ends, first.index()))).collect();
+        let feet: Vec<Feet> = edges.par_iter().map(|&(host, ends, _)| self.spread(host, ends, order)).collect();
+        for ((host, ends, first), feet) in edges.into_iter().zip(feet) {
+            let size = self.straight(ends[0]).distance(self.straight(ends[1]));
+            for node in first..first + inner {
                 self.result.hosts[node] = host;
-                self.result.sizes.insert(node, self.straight(ends[0]).distance(self.straight(ends[1])));
-                self.result.displacement[node] = place - self.elevated.mesh.points[node];
+                self.result.sizes.insert(node, size);
             }
+            self.take(first..first + inner, feet);
         }
     }
 
     /// Places of an edge's inner nodes: on the CAD, at equal fractions of the projected edge's length.
-    fn spread(&mut self, host: Host, ends: [NodeId; 2], order: Order) -> Vec<DVec3> {
+    fn spread(&self, host: Host, ends: [NodeId; 2], order: Order) -> Feet {
         let p = order.get();
         let [a, b] = ends.map(|n| self.straight(n) + self.result.displacement[n.index()]);
         let at = |s: f64| a.lerp(b, s);
@@ -145,39 +166,51 @@ impl Projector<'_> {
             return self.feet(host, &chord(&even));
         }
         let stations: Vec<f64> = (1..p * STATIONS).map(|k| k as f64 / (p * STATIONS) as f64).collect();
-        let feet = self.feet(host, &chord(&stations));
-        let shares = equal_lengths(a, b, &stations, &feet, p).unwrap_or(even);
-        self.feet(host, &chord(&shares))
+        let measured = self.feet(host, &chord(&stations));
+        let shares = equal_lengths(a, b, &stations, &measured.places, p).unwrap_or(even);
+        self.feet(host, &chord(&shares)).after(&measured)
     }
 
     fn faces(&mut self, boundary: &Boundary) {
         let order = self.elevated.mesh.order;
-        for (index, face) in boundary.faces.iter().enumerate() {
-            let block = &self.elevated.mesh.blocks[face.block];
+        let elevated = self.elevated;
+        let nodes = |face: &BoundaryFace| {
+            let block = &elevated.mesh.blocks[face.block];
             let stride = block.stride(order);
-            let nodes = &block.nodes[face.element * stride..(face.element + 1) * stride];
-            let (rim, inner) = nodes.split_at(interior_start(face.cell, order));
-            let host = self.association.faces[index];
-            if inner.is_empty() {
-                continue;
-            }
-            let size = self.straight(nodes[0]).distance(self.straight(nodes[1]));
-            let extension = interior_extension(face.cell, order);
-            let wishes: Vec<DVec3> = inner
-                .iter()
-                .zip(extension.chunks_exact(rim.len()))
-                .map(|(&node, weights)| {
-                    let moved: DVec3 =
-                        rim.iter().zip(weights).map(|(n, &w)| self.result.displacement[n.index()] * w).sum();
-                    self.straight(node) + moved
-                })
-                .collect();
-            for (&node, place) in inner.iter().zip(self.feet(host, &wishes)) {
+            block.nodes[face.element * stride..(face.element + 1) * stride].split_at(interior_start(face.cell, order))
+        };
+        let own = |(index, face): (usize, &BoundaryFace)| {
+            let (rim, inner) = nodes(face);
+            self.feet(self.association.faces[index], &self.wishes(face.cell, rim, inner))
+        };
+        let feet: Vec<Feet> = boundary.faces.par_iter().enumerate().map(own).collect();
+        for ((face, &host), feet) in boundary.faces.iter().zip(&self.association.faces).zip(feet) {
+            let (rim, inner) = nodes(face);
+            let size = self.straight(rim[0]).distance(self.straight(rim[1]));
+            for node in inner {
                 self.result.hosts[node.index()] = host;
                 self.result.sizes.insert(node.index(), size);
-                self.result.displacement[node.index()] = place - self.elevated.mesh.points[node.index()];
             }
+            self.take(inner.iter().map(|n| n.index()), feet);
         }
+    }
+
+    /// Where the inner nodes of a face would go: the smoothest extension of its rim's displacement.
+    fn wishes(&self, cell: Cell, rim: &[NodeId], inner: &[NodeId]) -> Vec<DVec3> {
+        let extension = interior_extension(cell, self.elevated.mesh.order);
+        let moved = |weights: &[f64]| -> DVec3 {
+            rim.iter().zip(weights).map(|(n, &w)| self.result.displacement[n.index()] * w).sum()
+        };
+        let inner = inner.iter().zip(extension.chunks_exact(rim.len()));
+        inner.map(|(&node, weights)| self.straight(node) + moved(weights)).collect()
+    }
+}
+
+impl Feet {
+    /// With the counts of the feet that led to these.
+    fn after(self, earlier: &Feet) -> Feet {
+        let (projections, unproven) = (self.projections + earlier.projections, self.unproven + earlier.unproven);
+        Feet { projections, unproven, ..self }
     }
 }
 
