@@ -19,6 +19,8 @@ use crate::mesh::NodeId;
 use crate::periodic::Ties;
 use crate::smooth::{Anchor, Constraint, Freedom};
 
+/// Edges, faces or nodes that are projected at a time: what they take while they wait does not grow with the mesh.
+const BATCH: usize = 1 << 12;
 /// Places between two nodes of an edge at which its projection is measured.
 const STATIONS: usize = 4;
 /// A projected edge this much longer than its chord does not run beside it: its nodes are not spread.
@@ -127,10 +129,12 @@ impl Projector<'_> {
     fn linear_nodes(&mut self) {
         let hosts = &self.association.nodes;
         let boundary: Vec<usize> = (0..self.elevated.linear_nodes).filter(|&n| hosts[n] != Host::Free).collect();
-        let own = |&n: &usize| self.feet(hosts[n], &[self.elevated.mesh.points[n]]);
-        let feet: Vec<Feet> = boundary.par_iter().map(own).collect();
-        for (n, feet) in boundary.into_iter().zip(feet) {
-            self.take(once(n), feet);
+        for batch in boundary.chunks(BATCH) {
+            let own = |&n: &usize| self.feet(hosts[n], &[self.elevated.mesh.points[n]]);
+            let feet: Vec<Feet> = batch.par_iter().map(own).collect();
+            for (&n, feet) in batch.iter().zip(feet) {
+                self.take(once(n), feet);
+            }
         }
     }
 
@@ -144,14 +148,16 @@ impl Projector<'_> {
         let hosts = self.association.edges.iter().zip(&boundary.edges);
         let edges: Vec<(Host, [NodeId; 2], usize)> =
             hosts.filter_map(|(&host, ends)| known.get(ends).map(|first| (host, *ends, first.index()))).collect();
-        let feet: Vec<Feet> = edges.par_iter().map(|&(host, ends, _)| self.spread(host, ends, order)).collect();
-        for ((host, ends, first), feet) in edges.into_iter().zip(feet) {
-            let size = self.straight(ends[0]).distance(self.straight(ends[1]));
-            for node in first..first + inner {
-                self.result.hosts[node] = host;
-                self.result.sizes.insert(node, size);
+        for batch in edges.chunks(BATCH) {
+            let feet: Vec<Feet> = batch.par_iter().map(|&(host, ends, _)| self.spread(host, ends, order)).collect();
+            for (&(host, ends, first), feet) in batch.iter().zip(feet) {
+                let size = self.straight(ends[0]).distance(self.straight(ends[1]));
+                for node in first..first + inner {
+                    self.result.hosts[node] = host;
+                    self.result.sizes.insert(node, size);
+                }
+                self.take(first..first + inner, feet);
             }
-            self.take(first..first + inner, feet);
         }
     }
 
@@ -179,19 +185,21 @@ impl Projector<'_> {
             let stride = block.stride(order);
             block.nodes[face.element * stride..(face.element + 1) * stride].split_at(interior_start(face.cell, order))
         };
-        let own = |(index, face): (usize, &BoundaryFace)| {
-            let (rim, inner) = nodes(face);
-            self.feet(self.association.faces[index], &self.wishes(face.cell, rim, inner))
-        };
-        let feet: Vec<Feet> = boundary.faces.par_iter().enumerate().map(own).collect();
-        for ((face, &host), feet) in boundary.faces.iter().zip(&self.association.faces).zip(feet) {
-            let (rim, inner) = nodes(face);
-            let size = self.straight(rim[0]).distance(self.straight(rim[1]));
-            for node in inner {
-                self.result.hosts[node.index()] = host;
-                self.result.sizes.insert(node.index(), size);
+        for (faces, hosts) in boundary.faces.chunks(BATCH).zip(self.association.faces.chunks(BATCH)) {
+            let own = |(face, &host): (&BoundaryFace, &Host)| {
+                let (rim, inner) = nodes(face);
+                self.feet(host, &self.wishes(face.cell, rim, inner))
+            };
+            let feet: Vec<Feet> = faces.par_iter().zip(hosts).map(own).collect();
+            for ((face, &host), feet) in faces.iter().zip(hosts).zip(feet) {
+                let (rim, inner) = nodes(face);
+                let size = self.straight(rim[0]).distance(self.straight(rim[1]));
+                for node in inner {
+                    self.result.hosts[node.index()] = host;
+                    self.result.sizes.insert(node.index(), size);
+                }
+                self.take(inner.iter().map(|n| n.index()), feet);
             }
-            self.take(inner.iter().map(|n| n.index()), feet);
         }
     }
 

@@ -42,15 +42,15 @@ def run(sagitta, name, order, engine, args, folder):
     return [[float(row[key]) for key in ("seconds", "sweep", "c_wcn_min", "c_jac_min", "inverted")] for row in rows]
 
 
-def best_so_far(rows):
-    """Times and costs at which the best state changed. A row's costs are those of the survey before its sweep."""
+def best_so_far(rows, begin):
+    """Times and costs at which the best state changed, the first at `begin`. A row's costs are those of the survey before its sweep."""
     seconds, wcn, jac, best = [], [], [], None
     for second, _, c_wcn, c_jac, inverted in rows:
         worst = min(c_wcn, c_jac)
         rank = (-inverted, 2 / (1 / c_wcn + 1 / c_jac) if worst > 0 else worst)
         if best is None or rank > best:
             best = rank
-            seconds.append(second if seconds else 0.0)
+            seconds.append(second if seconds else begin)
             wcn.append(c_wcn)
             jac.append(c_jac)
     return [*seconds, rows[-1][0]], [*wcn, wcn[-1]], [*jac, jac[-1]]
@@ -71,7 +71,7 @@ def main():
                 continue  # there is no order below
             with tempfile.TemporaryDirectory() as folder:
                 rows = run(args.sagitta, name, order, engine, args, pathlib.Path(folder))
-            seconds, wcn, jac = best_so_far(rows)
+            seconds, wcn, jac = best_so_far(rows, rows[0][0] if "order by order" in engine else 0.0)
             axis.step(seconds, jac, where="post", color=colour, label=f"{engine}: min C_JAC")
             axis.step(seconds, wcn, where="post", color=colour, linestyle=":", label=f"{engine}: min C_WCN")
             end, sweeps, c_wcn, c_jac, inverted = rows[-1]
