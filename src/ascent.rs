@@ -27,9 +27,9 @@ use crate::layers::leave_straight_beyond;
 use crate::mesh::{Mesh, NodeId};
 use crate::periodic::Ties;
 use crate::perturb::perturb;
-use crate::pipeline::{Clock, Job, PipelineError, Step, Told};
+use crate::pipeline::{Clock, Job, Observer, PipelineError, Step, Told};
 use crate::project::{CadConstraint, Projected, project};
-use crate::smooth::{Engine, Problem, Smoothed, Summary, smooth};
+use crate::smooth::{Engine, Problem, Progress, Smoothed, Summary, smooth};
 
 /// Weights of nodes that are as good as zero: a node on a face takes nothing from those off it.
 const NOTHING: f64 = 1e-13;
@@ -65,11 +65,11 @@ pub(crate) struct Level {
 }
 
 /// What the way up led to.
-pub(crate) struct Climb {
+pub(crate) struct Climb<'a> {
     /// The mesh at the order asked for.
     pub(crate) level: Level,
-    /// The mesh at the highest order below at which no element is inverted.
-    pub(crate) below: Option<Below>,
+    /// The mesh to fall back to.
+    pub(crate) below: Fall<'a>,
     /// What was done at the orders below.
     pub(crate) lower_orders: Vec<LowerOrder>,
 }
@@ -90,6 +90,35 @@ impl From<Level> for Below {
         places.iter_mut().zip(&mesh.points).for_each(|(place, straight)| *place -= *straight);
         let blocks = mesh.blocks.into_iter().map(|block| (block.cell, block.nodes)).collect();
         Below { order: mesh.order, blocks, moved: places }
+    }
+}
+
+/// The mesh at the highest order below at which no element is inverted.
+pub(crate) enum Fall<'a> {
+    /// As it came out.
+    Known(Option<Below>),
+    /// Not made again by a run that went on from a checkpoint: the way to it.
+    Skipped(Ascent<'a>),
+}
+
+impl Fall<'_> {
+    /// That mesh; where it was skipped, it is made now.
+    pub(crate) fn below(self) -> Option<Below> {
+        match self {
+            Fall::Known(below) => below,
+            Fall::Skipped(mut ascent) => ascent.lower(&mut Clock::new(&mut Silent)).ok()?.0,
+        }
+    }
+}
+
+/// Tells nobody.
+struct Silent;
+
+impl Observer for Silent {
+    fn step(&mut self, _: Step) {}
+
+    fn progress(&mut self, _: &Progress) -> bool {
+        true
     }
 }
 
@@ -116,7 +145,20 @@ impl<'a> Ascent<'a> {
     }
 
     /// Goes up to the order asked for.
-    pub(crate) fn climb(mut self, clock: &mut Clock) -> Result<Climb, PipelineError> {
+    pub(crate) fn climb(mut self, clock: &mut Clock) -> Result<Climb<'a>, PipelineError> {
+        let (below, lower_orders) = self.lower(clock)?;
+        let ready = self.ready(self.job.order, clock)?;
+        let skipped = self.found.is_some() && below.is_none();
+        if !skipped {
+            self.linear = Mesh::default(); // it was needed for the last time
+        }
+        let level = self.level(ready, below.as_ref(), clock)?;
+        let below = if skipped { Fall::Skipped(self) } else { Fall::Known(below) };
+        Ok(Climb { level, below, lower_orders })
+    }
+
+    /// Goes through the orders below; those that were done when the checkpoint was kept are left out.
+    fn lower(&mut self, clock: &mut Clock) -> Result<(Option<Below>, Vec<LowerOrder>), PipelineError> {
         let mut below: Option<Below> = None;
         let mut lower_orders = Vec::new();
         let direct = self.job.direct || self.job.smoothing.engine == Engine::Gradient;
@@ -124,7 +166,7 @@ impl<'a> Ascent<'a> {
         for order in Order::all().filter(between).collect::<Vec<_>>() {
             let ready = self.ready(order, clock)?;
             if self.found.as_ref().is_some_and(|found| found.nodes() > ready.elevated.mesh.points.len()) {
-                continue; // this order was done when the checkpoint was kept
+                continue;
             }
             let level = self.level(ready, below.as_ref(), clock)?;
             let Smoothed { sweeps, stopped, start, end, .. } = level.smoothed;
@@ -136,10 +178,7 @@ impl<'a> Ascent<'a> {
                 break;
             }
         }
-        let ready = self.ready(self.job.order, clock)?;
-        self.linear = Mesh::default(); // it was needed for the last time
-        let level = self.level(ready, below.as_ref(), clock)?;
-        Ok(Climb { level, below, lower_orders })
+        Ok((below, lower_orders))
     }
 
     /// Elevates and projects.

@@ -13,7 +13,7 @@
 
 use glam::DVec3;
 
-use crate::ascent::Below;
+use crate::ascent::Fall;
 use crate::associate::{Association, Boundary, Host};
 use crate::certify::{self, Certificate};
 use crate::element::Order;
@@ -51,7 +51,7 @@ pub(crate) struct Ladder<'a> {
     /// Hold linear nodes.
     pub freeze_linear: bool,
     /// The curved mesh of the order below.
-    pub below: Option<Below>,
+    pub below: Option<Fall<'a>>,
 }
 
 /// What the ladder led to.
@@ -149,7 +149,7 @@ impl Ladder<'_> {
 
     /// The curved mesh of the order below where it is proven valid, otherwise the straight one.
     fn fallback(&mut self, straight: &[DVec3]) -> Fallback {
-        if let Some(below) = self.below.take() {
+        if let Some(below) = self.below.take().and_then(Fall::below) {
             let mut places = below.raised(&self.elevated.mesh);
             places.iter_mut().zip(straight).for_each(|(place, straight)| *place += *straight);
             self.ties.apply(&mut places);

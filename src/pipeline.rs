@@ -262,7 +262,6 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
     let ascent = Ascent::new(job, linear, &boundary, &association)?;
     let Climb { level, below, lower_orders } = ascent.climb(&mut clock)?;
     let Level { ready: Ready { mut elevated, ties, mut projected, notes }, places, mut smoothed } = level;
-    association.notes.extend(notes);
 
     clock.step(Step::Certify);
     let ladder = Ladder {
@@ -274,10 +273,11 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
         settings: &job.smoothing,
         freeze_walls: job.freeze_walls,
         freeze_linear: job.freeze_linear,
-        below,
+        below: Some(below),
     };
     let Climbed { given_up, certificate, straight } =
         ladder.climb(places, &mut smoothed, |progress| clock.observer.progress(&progress));
+    association.notes.extend(notes);
     let Elevated { mesh, linear_nodes, .. } = elevated;
     let walls = walls(&mesh, &straight, &boundary, &association);
     Ok(Curved {
@@ -401,7 +401,7 @@ pub(crate) struct Clock<'a> {
 }
 
 impl<'a> Clock<'a> {
-    fn new(observer: &'a mut dyn Observer) -> Clock<'a> {
+    pub(crate) fn new(observer: &'a mut dyn Observer) -> Clock<'a> {
         Clock { observer, current: None, seconds: Vec::new() }
     }
 

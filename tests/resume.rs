@@ -7,7 +7,7 @@ mod common;
 use std::fs;
 use std::path::Path;
 
-use common::{Outcome, fixture, json, sagitta};
+use common::{Outcome, fixture, json, root, sagitta};
 
 /// The weeble, with work enough for several rounds.
 fn curve(out: &Path, order: &str, max_sweeps: &str, more: &[&str]) -> Outcome {
@@ -58,6 +58,23 @@ fn order_by_order_too() {
     }
     let direct = curve(&second, "3", "25", &["--direct", "--resume", text(&high)]);
     assert_refused(&direct, &high, "belongs to other work");
+}
+
+/// What cannot be valid falls back to the mesh of the order below, also where that was not made again.
+#[test]
+fn falls_back_as_without_interruption() {
+    let folder = tempfile::tempdir().unwrap();
+    let [whole, second, state] = ["whole.msh", "second.msh", "state"].map(|name| folder.path().join(name));
+    let case = |end: &str| root().join(format!("fixtures/torus_coarse/torus.{end}"));
+    let [mesh, cad, linkage] = ["msh", "step", "meshlink.xml"].map(case);
+    let curve = |out: &Path, more: [&str; 2]| {
+        let files = args!["curve", mesh, "--cad", cad, "--linkage", linkage, "-o", out];
+        let options = args!["--order", "3", "--max-sweeps", "30", "--quiet"];
+        sagitta(files.into_iter().chain(options).chain(more.iter().map(Into::into))).expect(3);
+    };
+    curve(&whole, ["--checkpoint", text(&state)]);
+    curve(&second, ["--resume", text(&state)]);
+    assert!(fs::read(&second).unwrap() == fs::read(&whole).unwrap(), "other bytes than without interruption");
 }
 
 #[test]
