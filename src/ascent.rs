@@ -98,7 +98,7 @@ pub(crate) enum Fall<'a> {
     /// As it came out.
     Known(Option<Below>),
     /// Not made again by a run that went on from a checkpoint: the way to it.
-    Skipped(Ascent<'a>),
+    Skipped(Box<Ascent<'a>>),
 }
 
 impl Fall<'_> {
@@ -153,7 +153,7 @@ impl<'a> Ascent<'a> {
             self.linear = Mesh::default(); // it was needed for the last time
         }
         let level = self.level(ready, below.as_ref(), clock)?;
-        let below = if skipped { Fall::Skipped(self) } else { Fall::Known(below) };
+        let below = if skipped { Fall::Skipped(Box::new(self)) } else { Fall::Known(below) };
         Ok(Climb { level, below, lower_orders })
     }
 
