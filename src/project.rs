@@ -4,6 +4,11 @@
 //! fractions of the length of the projected edge, those of a face to the smoothest extension of its edges' displacements. Projecting
 //! the equispaced nodes of the chord instead bunches them where the wall leans away from the chord: at P4 the wall is then
 //! 2.6 times as far from the CAD.
+//!
+//! At P2 an edge over a change of slope or curvature is nearer to the CAD if its node is not in the middle: over the junction of a
+//! line and an arc by a half, at 0.55 to 0.65 of the length. The wall as a whole is not: with up to 0.03, 0.06 and 0.1 of the length
+//! for every edge alone, the nozzle at scale 0.4 went from 1.5e-3 to 1.7, 2.1 and 2.3e-3 off the CAD, as the faces between such edges
+//! bulge, and wing_blunt at scale 0.4 from C_WCN 0.94 to 0.06, as the two sides of a layer no longer move alike.
 
 use std::iter::once;
 
