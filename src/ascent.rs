@@ -41,6 +41,8 @@ pub struct LowerOrder {
     pub order: Order,
     /// Sweeps over the active nodes.
     pub sweeps: usize,
+    /// Whether it was ended before it was done; the orders between are left out then.
+    pub stopped: bool,
     /// Smallest costs before the first sweep.
     pub start: Summary,
     /// Smallest costs at the end.
@@ -152,7 +154,8 @@ impl<'a> Ascent<'a> {
         if !skipped {
             self.linear = Mesh::default(); // it was needed for the last time
         }
-        let level = self.level(ready, below.as_ref(), clock)?;
+        let mut level = self.level(ready, below.as_ref(), clock)?;
+        level.smoothed.stopped |= lower_orders.iter().any(|lower| lower.stopped);
         let below = if skipped { Fall::Skipped(Box::new(self)) } else { Fall::Known(below) };
         Ok(Climb { level, below, lower_orders })
     }
@@ -170,7 +173,7 @@ impl<'a> Ascent<'a> {
             }
             let level = self.level(ready, below.as_ref(), clock)?;
             let Smoothed { sweeps, stopped, start, end, .. } = level.smoothed;
-            lower_orders.push(LowerOrder { order, sweeps, start, end });
+            lower_orders.push(LowerOrder { order, sweeps, stopped, start, end });
             if end.inverted == 0 {
                 below = Some(level.into());
             }

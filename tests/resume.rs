@@ -64,16 +64,18 @@ fn order_by_order_too() {
 #[test]
 fn falls_back_as_without_interruption() {
     let folder = tempfile::tempdir().unwrap();
-    let [whole, second, state] = ["whole.msh", "second.msh", "state"].map(|name| folder.path().join(name));
+    let file = |name: &str| folder.path().join(name);
+    let [whole, second, report, state] = ["whole.msh", "second.msh", "report.json", "state"].map(file);
     let case = |end: &str| root().join(format!("fixtures/torus_coarse/torus.{end}"));
     let [mesh, cad, linkage] = ["msh", "step", "meshlink.xml"].map(case);
     let curve = |out: &Path, more: [&str; 2]| {
         let files = args!["curve", mesh, "--cad", cad, "--linkage", linkage, "-o", out];
-        let options = args!["--order", "3", "--max-sweeps", "30", "--quiet"];
+        let options = args!["--order", "3", "--max-sweeps", "30", "--quiet", "--report", report];
         sagitta(files.into_iter().chain(options).chain(more.iter().map(Into::into))).expect(3);
     };
     curve(&whole, ["--checkpoint", text(&state)]);
     curve(&second, ["--resume", text(&state)]);
+    assert_eq!(json(&report)["smoothing"]["lower_orders"], serde_json::json!([]), "the checkpoint is of P3");
     assert!(fs::read(&second).unwrap() == fs::read(&whole).unwrap(), "other bytes than without interruption");
 }
 
