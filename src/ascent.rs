@@ -237,13 +237,15 @@ impl<'a> Ascent<'a> {
         };
         let raised = below.raised(&elevated.mesh);
         let mut rest = projected.clone();
-        for (displacement, raised) in rest.displacement.iter_mut().zip(&raised) {
-            *displacement -= *raised;
+        for (n, (displacement, raised)) in rest.displacement.iter_mut().zip(&raised).enumerate() {
+            let in_plane = self.association.plane_of(projected.host(n)).is_some();
+            *displacement = if in_plane { DVec3::ZERO } else { *displacement - *raised };
         }
         let mut places = carried(&rest);
         for (n, (place, raised)) in places.iter_mut().zip(&raised).enumerate() {
             let host = projected.host(n);
-            let plane = self.association.plane_of(host).filter(|_| n >= elevated.linear_nodes);
+            let held = self.job.freeze_linear && n < elevated.linear_nodes;
+            let plane = self.association.plane_of(host).filter(|_| !held);
             *place = match (host, plane) {
                 (Host::Free, _) => *place + *raised,
                 (_, Some(plane)) => plane.closest(*place + *raised),

@@ -5,6 +5,8 @@
 mod common;
 
 use common::{fixture, json, number, sagitta};
+use glam::DVec3;
+use sagitta::formats;
 
 /// The dish with a hole of six edges (`fixtures/make_dish.py`): least `C_JAC`, and the farthest point of its wall from the CAD.
 fn curve(order: &str, more: &[&str]) -> (f64, f64) {
@@ -29,5 +31,34 @@ fn sliding_columns_gain_what_frozen_walls_cannot() {
         );
         assert!(slid >= frozen + 0.1, "P{order}: {frozen} frozen, {slid} slid");
         assert!(slid_away <= 1.2 * frozen_away, "P{order}: the wall is {slid_away} off the CAD, {frozen_away} frozen");
+    }
+}
+
+/// Linear nodes of the dish's wall before and after; they come first in the file, layer by layer (`fixtures/make_dish.py`).
+fn wall_nodes(more: &[&str]) -> Vec<[DVec3; 2]> {
+    const LAYERS: usize = 12;
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("dish.msh");
+    let [mesh, cad] = ["msh", "step"].map(|extension| fixture("dish", extension));
+    let options = args!["curve", mesh, "--cad", cad, "--quiet", "--order", "2", "-o", out];
+    sagitta(options.into_iter().chain(more.iter().map(Into::into))).expect(0);
+    let [before, after] = [mesh, out].map(|path| formats::read(&path).unwrap().points);
+    let wall = before.len() / (LAYERS + 1);
+    before.into_iter().zip(after).take(wall).map(|(before, after)| [before, after]).collect()
+}
+
+#[test]
+fn linear_nodes_slide_on_the_wall_unless_they_are_held() {
+    const RADIUS: f64 = 4.0;
+    let moved = |nodes: &[[DVec3; 2]]| nodes.iter().map(|[a, b]| a.distance(*b)).fold(0.0, f64::max);
+    let slid = wall_nodes(&[]);
+    assert!(moved(&slid) > 1e-4, "the wall's linear nodes moved by {:e}", moved(&slid));
+    for [_, place] in &slid {
+        let off = (place.distance(DVec3::Z * RADIUS) - RADIUS).abs();
+        assert!(off < 1e-12 * RADIUS, "a linear node is {off:e} off the sphere, at {place}");
+    }
+    for held in ["--freeze-linear", "--freeze-walls"] {
+        let most = moved(&wall_nodes(&[held]));
+        assert!(most < 1e-11 * RADIUS, "{held}: a linear node moved by {most:e}");
     }
 }
