@@ -1,6 +1,7 @@
-//! What is done where elements are not proven valid after smoothing (design §7): never a worse mesh.
+//! What is done where elements are not proven valid, or faces on the CAD not free of folds, after smoothing (design §7): never a worse
+//! mesh.
 //!
-//! 1. Smooth again, with surveys twice as dense.
+//! 1. Smooth again, with surveys twice as dense, where elements fail.
 //! 2. Take the displacement back around the failing elements, at first by half, more from round to round, with a share that
 //!    falls smoothly with the distance, and smooth again; wall nodes that are off the CAD stay where they were put.
 //! 3. [`retreat`], element by element, which ends in a valid mesh whatever came before.
@@ -15,13 +16,13 @@ use glam::DVec3;
 
 use crate::ascent::Fall;
 use crate::associate::{Association, Boundary, Host};
-use crate::certify::{self, Certificate};
 use crate::element::Order;
 use crate::elevate::Elevated;
 use crate::mesh::NodeId;
 use crate::periodic::Ties;
 use crate::perturb::perturb;
 use crate::project::{CadConstraint, Projected};
+use crate::proof::Proof;
 use crate::retreat::{Fallback, GivenUp, given_up, retreat};
 use crate::smooth::{self, Anchor, Constraint, Freedom, Problem, Smoothed, smooth};
 
@@ -58,8 +59,8 @@ pub(crate) struct Ladder<'a> {
 pub(crate) struct Climbed {
     /// Wall faces that are off the CAD.
     pub given_up: Vec<GivenUp>,
-    /// The proof.
-    pub certificate: Certificate,
+    /// What is proven of the mesh.
+    pub proof: Proof,
     /// The straight places of all nodes.
     pub straight: Vec<DVec3>,
 }
@@ -72,48 +73,49 @@ impl Ladder<'_> {
         smoothed: &mut Smoothed,
         mut watch: impl FnMut(smooth::Progress) -> bool,
     ) -> Climbed {
-        let mut certificate = self.certified(&mut places);
-        if certificate.holds() {
+        let mut proof = self.proof(&mut places);
+        if proof.holds() {
             let straight = std::mem::replace(&mut self.elevated.mesh.points, places);
-            return Climbed { given_up: Vec::new(), certificate, straight };
+            return Climbed { given_up: Vec::new(), proof, straight };
         }
         let straight = self.elevated.mesh.points.clone();
         let fallback = self.fallback(&straight);
         let mut shares = vec![1.0; straight.len()];
         for rung in 0..=ROUNDS {
-            if certificate.holds() || smoothed.stopped {
+            if proof.holds() || smoothed.stopped {
                 break;
             }
             if rung > 0 {
-                self.take_back(rung, &certificate, &fallback, &mut places, &mut shares);
+                self.take_back(rung, &proof, &fallback, &mut places, &mut shares);
+            } else if proof.certificate.holds() {
+                continue; // smoothing does not look at folds of faces
             }
             self.smooth_again(smoothed, &straight, &shares, &mut places, &mut watch);
-            certificate = self.certified(&mut places);
+            proof = self.proof(&mut places);
         }
         self.elevated.mesh.points = places;
         let mesh = &mut self.elevated.mesh;
-        let untouched = certificate.holds() && shares.iter().all(|&s| s == 1.0);
+        let untouched = proof.holds() && shares.iter().all(|&s| s == 1.0);
         let (boundary, association) = (self.boundary, self.association);
         let mut off = given_up(mesh, boundary, association, &shares, fallback.order);
         let linear = &straight[..self.elevated.linear_nodes];
-        let (more, certificate) = retreat(mesh, &fallback, linear, boundary, association, self.ties, certificate);
+        let (more, proof) = retreat(mesh, &fallback, linear, boundary, association, self.ties, proof);
         off.retain(|own| more.iter().all(|other| other.face != own.face));
         off.extend(more);
         off.sort_by_key(|own| own.face);
         if !untouched {
             smoothed.survey(&Problem::new(mesh, &straight), &mesh.points, self.settings.survey_factor);
         }
-        Climbed { given_up: off, certificate, straight }
+        Climbed { given_up: off, proof, straight }
     }
 
     /// What is proven of the mesh with its nodes at `places`.
-    fn certified(&mut self, places: &mut Vec<DVec3>) -> Certificate {
+    fn proof(&mut self, places: &mut Vec<DVec3>) -> Proof {
         let mesh = &mut self.elevated.mesh;
         std::mem::swap(&mut mesh.points, places);
-        let linear = &places[..self.elevated.linear_nodes];
-        let certificate = certify::mesh(mesh, Some(linear), &certify::Settings::default());
+        let proof = Proof::of(mesh, &places[..self.elevated.linear_nodes], self.boundary, self.association);
         std::mem::swap(&mut mesh.points, places);
-        certificate
+        proof
     }
 
     fn smooth_again(
@@ -153,24 +155,24 @@ impl Ladder<'_> {
             let mut places = below.raised(&self.elevated.mesh);
             places.iter_mut().zip(straight).for_each(|(place, straight)| *place += *straight);
             self.ties.apply(&mut places);
-            if self.certified(&mut places).holds() {
+            if self.proof(&mut places).holds() {
                 return Fallback { order: below.order, places };
             }
         }
         Fallback { order: Order::LINEAR, places: straight.to_vec() }
     }
 
-    /// Takes the displacement back around the elements that are not proven valid.
+    /// Takes the displacement back around the elements that fail.
     fn take_back(
         &mut self,
         round: usize,
-        certificate: &Certificate,
+        proof: &Proof,
         fallback: &Fallback,
         places: &mut [DVec3],
         shares: &mut [f64],
     ) {
         let straight = &self.elevated.mesh.points;
-        let spots = self.spots(certificate, straight, round);
+        let spots = self.spots(proof, straight, round);
         let keep = if round == ROUNDS { 0.0 } else { 0.5 };
         let moves = |n: usize| fallback.order > Order::LINEAR || self.on_wall(n);
         let share = |n: usize| spots.iter().map(|spot| spot.share(straight[n], keep)).fold(1.0, f64::min);
@@ -205,7 +207,7 @@ impl Ladder<'_> {
         matches!(host, Host::Surface(_) | Host::Curve(_)) && self.association.plane_of(host).is_none()
     }
 
-    fn spots(&self, certificate: &Certificate, straight: &[DVec3], round: usize) -> Vec<Spot> {
+    fn spots(&self, proof: &Proof, straight: &[DVec3], round: usize) -> Vec<Spot> {
         let mesh = &self.elevated.mesh;
         let elements: Vec<&[NodeId]> = mesh.blocks_of(3).flat_map(|(_, block)| block.elements(mesh.order)).collect();
         let wall: Vec<DVec3> = (0..straight.len()).filter(|&n| self.on_wall(n)).map(|n| straight[n]).collect();
@@ -216,7 +218,7 @@ impl Ladder<'_> {
             let nearest = wall.iter().map(|w| w.distance_squared(middle)).fold(f64::INFINITY, f64::min).sqrt();
             Spot { middle, reach: REACH * round as f64 * (nearest + size) }
         };
-        certificate.failures.iter().map(|judged| spot(judged.element)).collect()
+        proof.failing(mesh, self.boundary).into_iter().map(spot).collect()
     }
 }
 

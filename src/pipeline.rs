@@ -36,9 +36,9 @@ use glam::DVec3;
 pub use crate::ascent::LowerOrder;
 use crate::ascent::{Ascent, Climb, Level, Ready};
 use crate::associate::{
-    self, AssociateError, Association, Boundary, Choice, Host, LinkageError, Summary, TieError, UnknownPatch,
+    self, AssociateError, Association, Boundary, Choice, LinkageError, Summary, TieError, UnknownPatch,
 };
-use crate::certify::{self, Certificate, WallFace, Walls};
+use crate::certify::{self, Certificate, Walls};
 use crate::checkpoint::{CheckpointError, Work};
 use crate::element::Order;
 use crate::elevate::Elevated;
@@ -46,6 +46,7 @@ use crate::formats;
 use crate::ladder::{Climbed, Ladder};
 use crate::mesh::{Mesh, TooMany};
 use crate::project::Projected;
+use crate::proof::Proof;
 use crate::retreat::GivenUp;
 use crate::smooth::{self, Checkpoint, Problem, Smoothed, Watch};
 
@@ -275,11 +276,10 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
         freeze_linear: job.freeze_linear,
         below: Some(below),
     };
-    let Climbed { given_up, certificate, straight } =
+    let Climbed { given_up, proof: Proof { certificate, walls }, straight } =
         ladder.climb(places, &mut smoothed, |progress| clock.observer.progress(&progress));
     association.notes.extend(notes);
     let Elevated { mesh, linear_nodes, .. } = elevated;
-    let walls = walls(&mesh, &straight, &boundary, &association);
     Ok(Curved {
         mesh,
         straight,
@@ -296,21 +296,6 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
         cad_scale: cad.scale,
         seconds: clock.finish(),
     })
-}
-
-/// Judges the curved faces that are tied to the CAD.
-fn walls(mesh: &Mesh, straight: &[DVec3], boundary: &Boundary, association: &Association) -> Walls {
-    let tied = |&f: &usize| matches!(association.faces[f], Host::Surface(_));
-    let numbers: Vec<usize> = (0..boundary.faces.len()).filter(tied).collect();
-    let face = |f: usize| {
-        let (own, order) = (&boundary.faces[f], mesh.order);
-        let block = &mesh.blocks[own.block];
-        let stride = block.stride(order);
-        let points = mesh.points_of(&block.nodes[own.element * stride..][..stride]).collect();
-        let corners = boundary.corners[f].iter().map(|n| straight[n.index()]).collect();
-        WallFace { cell: own.cell, order, points, corners }
-    };
-    certify::walls(&numbers, face, &certify::Settings::default())
 }
 
 /// What would lie on what: reads and associates, and goes no further.

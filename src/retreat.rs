@@ -1,21 +1,21 @@
-//! Where elements stay invalid: the displacement of the nodes around them is taken back, just as far as it must be.
+//! Where elements stay invalid or wall faces folded: the displacement of the nodes around them is taken back, just as far as it
+//! must be.
 //!
-//! Each round halves the displacement of all nodes of the elements that are not proven valid (below an eighth it is taken
-//! back whole) and of their neighbours, and certifies what that touches. What is gone back to is a valid mesh, the curved mesh of a
+//! Each round halves the displacement of all nodes of the elements that are not proven valid or have a face that is not proven free
+//! of folds (below an eighth it is taken back whole) and of their neighbours, and judges what that touches. What is gone back to is a valid mesh, the curved mesh of a
 //! lower order or the straight one, so the rounds end in a valid mesh; every wall face that is no longer on the CAD is listed.
 
 use glam::DVec3;
 
 use crate::associate::{Association, Boundary, Host};
-use crate::certify::{self, Buffer, Certificate, Elements, MeshElements};
+use crate::certify::{self, Buffer, Elements, MeshElements};
 use crate::element::{Cell, Order};
 use crate::mesh::Mesh;
 use crate::periodic::Ties;
+use crate::proof::{Proof, behind, walls};
 
 /// A share of the displacement below this counts as none.
 const LEAST_SHARE: f64 = 0.125;
-/// More rounds than it takes to straighten any patch that fits a mesh.
-const MOST_ROUNDS: usize = 1000;
 
 /// A valid mesh to go back to.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,7 +37,8 @@ pub struct GivenUp {
     pub order: Order,
 }
 
-/// Takes displacements back until every element is proven valid; `linear` are the places of the linear nodes. Returns the faces given up and the certificate.
+/// Takes displacements back until the proof holds, or nothing is left to take back; `linear` are the places of the linear nodes
+/// before they were moved, `proof` that of the mesh as it is. Returns the faces given up and the proof.
 #[must_use]
 pub fn retreat(
     mesh: &mut Mesh,
@@ -46,17 +47,19 @@ pub fn retreat(
     boundary: &Boundary,
     association: &Association,
     ties: &Ties,
-    certificate: Certificate,
-) -> (Vec<GivenUp>, Certificate) {
-    if certificate.holds() {
-        return (Vec::new(), certificate);
+    proof: Proof,
+) -> (Vec<GivenUp>, Proof) {
+    if proof.holds() {
+        return (Vec::new(), proof);
     }
-    let settings = certify::Settings::default();
     let curved = mesh.points.clone();
     let mut shares = vec![1.0; curved.len()];
-    let mut failing: Vec<usize> = certificate.failures.iter().map(|judged| judged.element).collect();
-    for _ in 0..MOST_ROUNDS {
+    let mut failing = proof.failing(mesh, boundary);
+    while !failing.is_empty() {
         let touched = take_back(mesh, ties, &failing, &mut shares);
+        if touched.is_empty() {
+            break;
+        }
         for (n, &share) in shares.iter().enumerate() {
             if share < 1.0 {
                 mesh.points[n] = fallback.places[n].lerp(curved[n], share);
@@ -64,17 +67,17 @@ pub fn retreat(
         }
         ties.apply(&mut mesh.points);
         let subset = Subset { whole: MeshElements::new(mesh, Some(linear)), elements: &touched };
-        let outcome = certify::certify(&subset, &settings);
+        let outcome = certify::certify(&subset, &certify::Settings::default());
         failing = outcome.failures.iter().map(|judged| touched[judged.element]).collect();
-        if failing.is_empty() {
-            break;
-        }
+        let moved = |f: usize| boundary.nodes(f, mesh).iter().any(|n| shares[n.index()] < 1.0);
+        failing.extend(behind(mesh, boundary, &walls(mesh, linear, boundary, association, moved)));
     }
-    let certificate = certify::mesh(mesh, Some(linear), &settings);
-    (given_up(mesh, boundary, association, &shares, fallback.order), certificate)
+    let proof = Proof::of(mesh, linear, boundary, association);
+    (given_up(mesh, boundary, association, &shares, fallback.order), proof)
 }
 
-/// Halves the shares around failing elements; returns all elements that have a node with a changed share.
+/// Halves the shares around failing elements; returns all elements that have a node with a changed share, none where all shares
+/// were zero already.
 fn take_back(mesh: &Mesh, ties: &Ties, failing: &[usize], shares: &mut [f64]) -> Vec<usize> {
     let mut changed = vec![false; shares.len()];
     let elements: Vec<&[crate::mesh::NodeId]> =
@@ -84,6 +87,7 @@ fn take_back(mesh: &Mesh, ties: &Ties, failing: &[usize], shares: &mut [f64]) ->
     let ring: Vec<usize> = (0..elements.len()).filter(|&e| near(&changed, e)).collect();
     ring.iter().flat_map(|&e| elements[e]).for_each(|n| changed[n.index()] = true);
     ties.spread(&mut changed);
+    changed.iter_mut().zip(&*shares).for_each(|(changed, &share)| *changed &= share > 0.0);
     for (share, _) in shares.iter_mut().zip(&changed).filter(|(_, changed)| **changed) {
         *share = if *share <= LEAST_SHARE { 0.0 } else { 0.5 * *share };
     }
@@ -99,11 +103,8 @@ pub(crate) fn given_up(
     order: Order,
 ) -> Vec<GivenUp> {
     let mut faces = Vec::new();
-    for (face, own) in boundary.faces.iter().enumerate() {
-        let block = &mesh.blocks[own.block];
-        let stride = block.stride(mesh.order);
-        let nodes = &block.nodes[own.element * stride..][..stride];
-        let share = nodes.iter().map(|n| shares[n.index()]).fold(1.0, f64::min);
+    for face in 0..boundary.faces.len() {
+        let share = boundary.nodes(face, mesh).iter().map(|n| shares[n.index()]).fold(1.0, f64::min);
         if share < 1.0 && matches!(association.faces[face], Host::Surface(_)) {
             faces.push(GivenUp { face, share, order });
         }

@@ -63,6 +63,15 @@ impl Boundary {
         self.faces.push(face);
     }
 
+    /// Nodes of a face in `mesh`, which has the faces of the linear mesh, in internal order.
+    #[must_use]
+    pub fn nodes<'m>(&self, face: usize, mesh: &'m Mesh) -> &'m [NodeId] {
+        let own = &self.faces[face];
+        let block = &mesh.blocks[own.block];
+        let stride = block.stride(mesh.order);
+        &block.nodes[own.element * stride..][..stride]
+    }
+
     /// The face with these corners, in whatever order.
     #[must_use]
     pub fn face(&self, corners: &[NodeId]) -> Option<usize> {
