@@ -3,6 +3,7 @@
 mod best;
 mod block;
 mod checkpoint;
+mod confirm;
 mod density;
 mod descend;
 mod engine;

@@ -99,9 +99,9 @@ impl<'a> Problem<'a> {
         cells
     }
 
-    /// Costs of all elements at the places `x` of all nodes.
-    pub(super) fn all_costs(&self, kernels: &Kernels, x: &[DVec3]) -> Vec<ElementCost> {
-        self.costs(kernels, x, (0..self.element_count()).into_par_iter())
+    /// The numbers of all elements.
+    pub(super) fn elements(&self) -> rayon::range::Iter<usize> {
+        (0..self.element_count()).into_par_iter()
     }
 
     /// Costs of the given elements at the places `x` of all nodes.

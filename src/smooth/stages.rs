@@ -1,7 +1,8 @@
 //! The stages of the paper (§2.3): shape alone while sub-elements are inverted, then shape and Jacobian.
 //!
 //! A stage goes on in rounds: choose the active elements, those below [`LOW`] first, descend, survey. What is reported is
-//! what is surveyed: the costs are those of the closing survey, at `survey_factor` times `p` divisions an edge. The descent
+//! what is surveyed: the costs are those of the closing survey, at `survey_factor` times `p` divisions an edge, confirmed by the
+//! certificate (`confirm.rs`). The descent
 //! looks at `p` divisions; an element on which that is blind (it sees a better Jacobian than there is) is given a denser
 //! survey of its own. Elements outside the patch do not change and are not surveyed again.
 //!
@@ -13,6 +14,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::best::Best;
+use super::confirm::confirmed_costs;
 use super::density::Density;
 use super::descend::descend;
 use super::engine::Engine;
@@ -70,7 +72,7 @@ pub fn smooth(
 ) -> Smoothed {
     let surveys: Vec<Kernels> =
         factors(settings.survey_factor).iter().map(|f| Kernels::new(problem, problem.order.get() * f)).collect();
-    let costs = problem.all_costs(&surveys[surveys.len() - 1], x);
+    let costs = confirmed_costs(problem, &surveys[surveys.len() - 1], settings.threshold, problem.elements(), x);
     let start = resumed.as_ref().map_or_else(|| Summary::of(&costs), |checkpoint| checkpoint.start);
     let mut run = Run {
         problem,
@@ -273,9 +275,11 @@ impl Run<'_, '_> {
         for (&node, &place) in &checkpoint.best {
             best[node as usize] = place;
         }
-        let costs = self.problem.all_costs(closing, &best);
+        let own =
+            |x: &[DVec3]| confirmed_costs(self.problem, closing, self.settings.threshold, self.problem.elements(), x);
+        let costs = own(&best);
         *x = checkpoint.x.into_owned();
-        self.costs = self.problem.all_costs(closing, x);
+        self.costs = own(x);
         self.best = Best::is_now(Summary::of(&costs));
         for node in (0..best.len()).filter(|&n| best[n] != x[n]) {
             self.best.places.insert(node as u32, best[node]);
@@ -323,7 +327,8 @@ impl Run<'_, '_> {
     /// Takes the costs of changed elements, and keeps the state if it is the best.
     fn survey(&mut self, elements: &[usize], x: &[DVec3]) {
         let closing = &self.surveys[self.surveys.len() - 1];
-        for (&e, cost) in elements.iter().zip(self.problem.costs(closing, x, elements.par_iter().copied())) {
+        let (own, level) = (elements.par_iter().copied(), self.settings.threshold);
+        for (&e, cost) in elements.iter().zip(confirmed_costs(self.problem, closing, level, own, x)) {
             self.costs[e] = cost;
         }
         let summary = Summary::of(&self.costs);

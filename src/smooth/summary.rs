@@ -34,7 +34,7 @@ pub struct Summary {
 impl Smoothed {
     /// Takes the costs anew, after nodes were moved by others.
     pub fn survey(&mut self, problem: &Problem, x: &[DVec3], survey_factor: usize) {
-        self.costs = problem.all_costs(&Kernels::new(problem, problem.order.get() * survey_factor), x);
+        self.costs = problem.costs(&Kernels::new(problem, problem.order.get() * survey_factor), x, problem.elements());
         self.end = Summary::of(&self.costs);
     }
 }
