@@ -24,7 +24,7 @@ use crate::perturb::perturb;
 use crate::project::{CadConstraint, Projected};
 use crate::proof::Proof;
 use crate::retreat::{Fallback, GivenUp, given_up, retreat};
-use crate::smooth::{self, Anchor, Constraint, Freedom, Problem, Smoothed, smooth};
+use crate::smooth::{self, Anchor, Constraint, Freedom, Image, Problem, Smoothed, smooth};
 
 /// Rounds of the second rung; the share that stays is halved from one to the next, and none is left in the last.
 const ROUNDS: usize = 4;
@@ -249,6 +249,10 @@ impl Constraint for Held<'_> {
 
     fn restrict(&self, node: NodeId, from: DVec3, wish: DVec3) -> DVec3 {
         self.wall.restrict(node, from, wish)
+    }
+
+    fn images(&self) -> &[Image] {
+        self.wall.images()
     }
 
     fn anchor(&self, node: NodeId) -> Option<Anchor> {

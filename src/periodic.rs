@@ -1,7 +1,6 @@
 //! Periodic patches: nodes of one side are images of nodes of the other, and stay so.
 //!
-//! Only the master's nodes are projected and carried on their own; the slave's are set to their images, wherever nodes move. While the
-//! mesh is smoothed both are held.
+//! Only the master's nodes are projected, carried and smoothed on their own; the slave's are set to their images, wherever nodes move.
 
 use std::collections::BTreeMap;
 
@@ -13,6 +12,7 @@ use crate::associate::Boundary;
 use crate::element::{Cell, canonical, interior_slots};
 use crate::elevate::Elevated;
 use crate::mesh::{Mesh, NodeId, Periodic};
+use crate::smooth::Image;
 
 /// The linear nodes of a pair correspond if none is farther from its partner's image; share of the mesh's box.
 pub const CONGRUENT: f64 = 1e-6;
@@ -20,9 +20,7 @@ pub const CONGRUENT: f64 = 1e-6;
 /// Nodes that are images of others.
 #[derive(Clone, Debug, Default)]
 pub struct Ties {
-    /// Each node that follows, the node that leads, which follows none, and the map between.
-    images: Vec<(NodeId, NodeId, DAffine3)>,
-    held: FxHashSet<NodeId>,
+    images: Vec<Image>,
 }
 
 impl Ties {
@@ -54,27 +52,26 @@ impl Ties {
         records.retain(|record| record.slave.tag != record.master);
         elevated.mesh.periodic = records;
         let images: Vec<_> = leads.keys().map(|&slave| (slave, root(&leads, slave))).collect();
-        let images: Vec<_> = images.into_iter().map(|(slave, (lead, map))| (slave, lead, map)).collect();
-        let held = images.iter().flat_map(|&(slave, lead, _)| [slave, lead]).collect();
-        (Ties { images, held }, notes)
+        let images = images.into_iter().map(|(node, (of, map))| Image { node, of, map }).collect();
+        (Ties { images }, notes)
     }
 
-    /// Whether a node leads or follows: it must not move on its own.
+    /// All nodes that are images of others.
     #[must_use]
-    pub fn holds(&self, node: NodeId) -> bool {
-        self.held.contains(&node)
+    pub fn images(&self) -> &[Image] {
+        &self.images
     }
 
     /// Puts every node that follows at its image.
     pub fn apply(&self, places: &mut [DVec3]) {
-        for &(slave, lead, map) in &self.images {
+        for &Image { node: slave, of: lead, map } in &self.images {
             places[slave.index()] = map.transform_point3(places[lead.index()]);
         }
     }
 
     /// Gives every node that follows the displacement that takes it to its image.
     pub fn carry(&self, straight: &[DVec3], displacement: &mut [DVec3]) {
-        for &(slave, lead, map) in &self.images {
+        for &Image { node: slave, of: lead, map } in &self.images {
             let image = map.transform_point3(straight[lead.index()] + displacement[lead.index()]);
             displacement[slave.index()] = image - straight[slave.index()];
         }
@@ -82,10 +79,10 @@ impl Ties {
 
     /// Marks both sides of every pair of which one is marked.
     pub fn spread(&self, marked: &mut [bool]) {
-        for &(slave, lead, _) in &self.images {
+        for &Image { node: slave, of: lead, .. } in &self.images {
             marked[lead.index()] |= marked[slave.index()];
         }
-        for &(slave, lead, _) in &self.images {
+        for &Image { node: slave, of: lead, .. } in &self.images {
             marked[slave.index()] |= marked[lead.index()];
         }
     }
@@ -93,7 +90,7 @@ impl Ties {
     /// Gives both sides of every pair the lesser value.
     pub fn least(&self, values: &mut [f64]) {
         for _ in 0..2 {
-            for &(slave, lead, _) in &self.images {
+            for &Image { node: slave, of: lead, .. } in &self.images {
                 let least = values[slave.index()].min(values[lead.index()]);
                 (values[slave.index()], values[lead.index()]) = (least, least);
             }
@@ -103,7 +100,7 @@ impl Ties {
     /// The largest distance of a node from its image.
     #[must_use]
     pub fn farthest(&self, places: &[DVec3]) -> f64 {
-        let apart = |&(slave, lead, map): &(NodeId, NodeId, DAffine3)| {
+        let apart = |&Image { node: slave, of: lead, map }: &Image| {
             map.transform_point3(places[lead.index()]).distance(places[slave.index()])
         };
         self.images.iter().map(apart).fold(0.0, f64::max)

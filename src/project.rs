@@ -11,18 +11,19 @@
 //! bulge, and wing_blunt at scale 0.4 from C_WCN 0.94 to 0.06, as the two sides of a layer no longer move alike.
 
 use std::iter::once;
+use std::mem::discriminant;
 
 use cad::{EntityId, Evaluation, Foot, Group};
 use glam::DVec3;
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::associate::{Association, Boundary, BoundaryFace, Host};
 use crate::element::{Cell, Order, interior_count, interior_extension, interior_start};
 use crate::elevate::Elevated;
 use crate::mesh::NodeId;
 use crate::periodic::Ties;
-use crate::smooth::{Anchor, Constraint, Freedom};
+use crate::smooth::{Anchor, Constraint, Freedom, Image};
 
 /// Edges, faces or nodes that are projected at a time: what they take while they wait does not grow with the mesh.
 const BATCH: usize = 1 << 12;
@@ -282,6 +283,7 @@ pub struct CadConstraint<'a> {
     straight: &'a [DVec3],
     projected: &'a Projected,
     ties: &'a Ties,
+    held: FxHashSet<NodeId>,
     linear_nodes: usize,
     freeze_walls: bool,
     freeze_linear: bool,
@@ -291,7 +293,8 @@ impl<'a> CadConstraint<'a> {
     /// The constraint of the given hosts.
     ///
     /// With `freeze_linear` all linear nodes are held. With `freeze_walls` nodes on curves and curved surfaces are held; nodes
-    /// in planes move all the same. Nodes of periodic patches are held.
+    /// in planes move all the same. Nodes of periodic patches move as images of one another, and are held where their hosts are not
+    /// of one kind.
     #[must_use]
     pub fn new(
         association: &'a Association,
@@ -302,7 +305,13 @@ impl<'a> CadConstraint<'a> {
         freeze_walls: bool,
         freeze_linear: bool,
     ) -> CadConstraint<'a> {
-        CadConstraint { association, straight, projected, ties, linear_nodes, freeze_walls, freeze_linear }
+        let kind = |node: NodeId| {
+            let host = projected.host(node.index());
+            (discriminant(&host), association.plane_of(host).is_some())
+        };
+        let unlike = ties.images().iter().filter(|image| kind(image.node) != kind(image.of));
+        let held = unlike.flat_map(|image| [image.node, image.of]).collect();
+        CadConstraint { association, straight, projected, ties, held, linear_nodes, freeze_walls, freeze_linear }
     }
 
     fn foot(&self, host: Host, x: DVec3) -> Option<Foot> {
@@ -316,7 +325,7 @@ impl Constraint for CadConstraint<'_> {
         if self.freeze_linear && node.index() < self.linear_nodes {
             return Freedom::Fixed;
         }
-        if self.ties.holds(node) {
+        if self.held.contains(&node) {
             return Freedom::Fixed;
         }
         if host == Host::Free {
@@ -351,6 +360,10 @@ impl Constraint for CadConstraint<'_> {
             Host::Free => wish,
             Host::Plane(_) | Host::Vertex(_) | Host::Straight => from,
         }
+    }
+
+    fn images(&self) -> &[Image] {
+        self.ties.images()
     }
 
     fn anchor(&self, node: NodeId) -> Option<Anchor> {

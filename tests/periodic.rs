@@ -9,7 +9,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use cad::Aabb;
-use common::{json, root, sagitta};
+use common::{json, number, root, sagitta};
 use glam::{DMat4, DVec3};
 use sagitta::formats;
 use sagitta::mesh::{Mesh, NodeId};
@@ -80,6 +80,18 @@ fn plane_sides_of_a_sector_by_the_mesh_file() {
     let largest = largest_bend(dir.path(), "sector");
     assert!(largest > 1e-3, "the wall stays straight: {largest}");
     assert!(apart(&linear, turned) < 1e-6);
+}
+
+/// With the nodes of both sides held, C_JAC ended at 0.52 and 0.58.
+#[test]
+fn the_elements_at_the_sides_are_smoothed() {
+    let dir = tempfile::tempdir().unwrap();
+    let [output, report] = ["out.msh", "report.json"].map(|name| dir.path().join(name));
+    for order in [2, 3] {
+        curve("sector", order, &args!["--report", report], &output);
+        let c_jac = number(&json(&report), "/smoothing/end/c_jac");
+        assert!(c_jac >= 0.75, "P{order}: {c_jac}");
+    }
 }
 
 /// How far the wall's curved faces bend away from the linear ones: the largest distance from a P2 edge node to its chord's middle.

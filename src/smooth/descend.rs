@@ -110,9 +110,22 @@ impl<'a> State<'a> {
             .into_par_iter()
             .map(|i| if patch.movable[i] { self.constraint.freedom(patch.nodes[i], x[i]) } else { Freedom::Fixed })
             .collect();
+        self.gather_images();
         let blocks = self.derivatives.par_iter().zip(&self.freedom).with_min_len(256);
         blocks.map(|(d, &f)| positive_inverse(d.hessian, f, FLAT)).collect_into_vec(&mut self.inverses);
         self.gradient = self.derivatives.iter().zip(&self.freedom).map(|(d, f)| f.keep(d.gradient)).collect();
+    }
+
+    /// An image `y = R x + t` moves with its original `x` alone, which takes its derivatives: `R^T g` and `R^T H R`.
+    fn gather_images(&mut self) {
+        for &(image, of, map) in &self.objective.patch.ties {
+            let NodeDerivative { gradient, hessian } =
+                std::mem::replace(&mut self.derivatives[image], NodeDerivative::ZERO);
+            let (turn, back) = (map.matrix3, map.matrix3.transpose());
+            self.derivatives[of].gradient += back * gradient;
+            self.derivatives[of].hessian += back * hessian * turn;
+            self.freedom[image] = Freedom::Fixed;
+        }
     }
 
     /// `-H g` by the two-loop recursion, with the blocks as the first estimate of `H`.
@@ -162,7 +175,7 @@ impl<'a> State<'a> {
 
     fn moved(&self, x: &[DVec3], direction: &[DVec3], share: f64) -> Vec<DVec3> {
         let nodes = &self.objective.patch.nodes;
-        (0..x.len())
+        let mut moved: Vec<DVec3> = (0..x.len())
             .into_par_iter()
             .with_min_len(256)
             .map(|i| match self.freedom[i] {
@@ -172,7 +185,12 @@ impl<'a> State<'a> {
                     self.constraint.restrict(nodes[i], x[i], x[i] + direction[i] * share)
                 }
             })
-            .collect()
+            .collect();
+        for &(image, of, map) in self.objective.patch.ties.iter().filter(|(_, of, _)| self.objective.patch.movable[*of])
+        {
+            moved[image] = map.transform_point3(moved[of]);
+        }
+        moved
     }
 }
 

@@ -8,7 +8,7 @@
 //! Where the paper is silent: the wish is the step that would bring the cost to 1 if its slope stayed, and a node whose
 //! cost fell since the last sweep goes half as far, later farther again. All nodes of a sweep step from the same state, so
 //! that the result does not depend on their order or on the number of threads. Nodes on walls keep their springs
-//! ([`super::Anchor`]), as with the other engine.
+//! ([`super::Anchor`]), as with the other engine; nodes of periodic patches, of which the paper has none, are held.
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
@@ -181,6 +181,9 @@ fn active(objective: &Objective, costs: &[(f64, DVec3)], threshold: f64) -> Vec<
                 nodes.iter().for_each(|&node| active[node as usize] = patch.movable[node as usize]);
             }
         }
+    }
+    for &(image, of, _) in &patch.ties {
+        (active[image], active[of]) = (false, false);
     }
     active
 }

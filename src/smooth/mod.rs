@@ -18,7 +18,7 @@ mod summary;
 mod survey;
 mod watch;
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 
 use crate::mesh::NodeId;
 pub use checkpoint::Checkpoint;
@@ -62,10 +62,26 @@ pub trait Constraint: Sync {
     /// The allowed place nearest to `wish`, for a node that stands at `from`.
     fn restrict(&self, node: NodeId, from: DVec3, wish: DVec3) -> DVec3;
 
+    /// Nodes that move as images of others.
+    fn images(&self) -> &[Image] {
+        &[]
+    }
+
     /// What draws a node back to where it was put; nodes without an anchor follow their elements alone.
     fn anchor(&self, _node: NodeId) -> Option<Anchor> {
         None
     }
+}
+
+/// A node of a periodic patch that is another's image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Image {
+    /// The node.
+    pub node: NodeId,
+    /// What it is an image of; itself no image.
+    pub of: NodeId,
+    /// The map from that one to the node.
+    pub map: DAffine3,
 }
 
 /// A spring that holds a wall node near its place among its neighbours: the wall polynomial follows the CAD only as well

@@ -1,8 +1,8 @@
 //! The part of the mesh that is being smoothed: active elements, their nodes, and who owns what.
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 
-use super::Problem;
+use super::{Image, Problem};
 use crate::element::Cell;
 use crate::mesh::NodeId;
 
@@ -29,8 +29,10 @@ pub(super) struct Patch {
     pub(super) slots: Vec<u32>,
     /// The mesh's nodes.
     pub(super) nodes: Vec<NodeId>,
-    /// Whether all elements around the node are in the patch, so that it may move.
+    /// Whether all elements around the node, and around its images, are in the patch, so that it may move.
     pub(super) movable: Vec<bool>,
+    /// Nodes that are images of others, those others, and the maps.
+    pub(super) ties: Vec<(usize, usize, DAffine3)>,
     /// For each node the range in `incident`.
     starts: Vec<u32>,
     /// Slots by node, rising.
@@ -41,7 +43,7 @@ pub(super) struct Patch {
 
 impl Patch {
     /// The patch of the elements that `active` names (rising ids), with every element's survey density.
-    pub(super) fn new(problem: &Problem, active: &[usize], density: &[u8]) -> Patch {
+    pub(super) fn new(problem: &Problem, active: &[usize], density: &[u8], images: &[Image]) -> Patch {
         let mut runs: Vec<Run> = Vec::new();
         let mut elements: Vec<usize> = active.to_vec();
         elements.sort_by_key(|&e| (problem.cell(e), density[e], e));
@@ -64,15 +66,29 @@ impl Patch {
         }
         let (starts, incident) = incidence(&slots, nodes.len());
         let complete = |i: usize| (starts[i + 1] - starts[i]) as usize == problem.valence(nodes[i]);
-        let movable = (0..nodes.len()).map(complete).collect();
+        let mut movable: Vec<bool> = (0..nodes.len()).map(complete).collect();
+        let ties = ties(images, &local, &mut movable);
         let targets = nodes.iter().map(|n| problem.straight[n.index()]).collect();
-        Patch { elements, runs, slots, nodes, movable, starts, incident, targets }
+        Patch { elements, runs, slots, nodes, movable, ties, starts, incident, targets }
     }
 
     /// Slots of a node's appearances in elements, rising.
     pub(super) fn incident(&self, node: usize) -> &[u32] {
         &self.incident[self.starts[node] as usize..self.starts[node + 1] as usize]
     }
+}
+
+/// The images among the patch's nodes, by `local` number; a node moves only where all that move with it can.
+fn ties(images: &[Image], local: &[u32], movable: &mut [bool]) -> Vec<(usize, usize, DAffine3)> {
+    let own = |node: NodeId| Some(local[node.index()]).filter(|&n| n != u32::MAX).map(|n| n as usize);
+    let found: Vec<_> = images.iter().map(|image| (own(image.node), own(image.of), image.map)).collect();
+    for _ in 0..2 {
+        for &(node, of, _) in &found {
+            let both = [node, of].iter().all(|n| n.is_some_and(|n| movable[n]));
+            [node, of].into_iter().flatten().for_each(|n| movable[n] = both);
+        }
+    }
+    found.into_iter().filter_map(|(node, of, map)| Some((node?, of?, map))).collect()
 }
 
 fn incidence(slots: &[u32], nodes: usize) -> (Vec<u32>, Vec<u32>) {

@@ -23,7 +23,7 @@ use super::kernel::Weights;
 use super::objective::Objective;
 use super::patch::Patch;
 use super::problem::Kernels;
-use super::{Checkpoint, Constraint, ElementCost, Problem, Progress, Settings, Smoothed, Summary, Watch};
+use super::{Checkpoint, Constraint, ElementCost, Image, Problem, Progress, Settings, Smoothed, Summary, Watch};
 use crate::quality;
 
 /// A survey is too coarse for an element where it misses this much of its `C_JAC`.
@@ -178,7 +178,7 @@ impl Run<'_, '_> {
         let stage = self.pace.stage;
         while self.goes_on() && (stage == Stage::Full || self.pace.idle < 2) {
             let first = self.sweeps;
-            let active = activate(self.problem, &self.costs, stage, [self.settings.threshold; 2], RINGS);
+            let active = self.activate([self.settings.threshold; 2], RINGS);
             self.round(&active, x);
             if self.sweeps == first {
                 break; // every node is above the threshold
@@ -189,7 +189,6 @@ impl Run<'_, '_> {
 
     /// One stage.
     fn stage(&mut self, x: &mut [DVec3]) {
-        let stage = self.pace.stage;
         while self.goes_on() {
             let (low, focused) = (self.lowest() < LOW, self.pace.focused);
             let (levels, rings) = match (low, focused) {
@@ -197,7 +196,7 @@ impl Run<'_, '_> {
                 (false, true) => (self.focus(), FOCUS_RINGS),
                 (false, false) => ([self.settings.threshold; 2], RINGS),
             };
-            let active = activate(self.problem, &self.costs, stage, levels, rings);
+            let active = self.activate(levels, rings);
             if active.is_empty() {
                 break;
             }
@@ -248,11 +247,34 @@ impl Run<'_, '_> {
         !self.stopped && self.sweeps < self.settings.max_sweeps
     }
 
+    /// Elements with a cost below its level (`C_WCN`, `C_JAC`), and rings of elements around them.
+    fn activate(&self, levels: [f64; 2], rings: usize) -> Vec<usize> {
+        let full = self.pace.stage == Stage::Full;
+        let below = |c: &ElementCost| c.c_wcn < levels[0] || (full && c.c_jac < levels[1]);
+        let mut active: Vec<bool> = self.costs.iter().map(below).collect();
+        for _ in 0..rings {
+            let mut touched = vec![false; self.problem.node_count()];
+            for e in (0..active.len()).filter(|&e| active[e]) {
+                for node in self.problem.nodes(e) {
+                    touched[node.index()] = true;
+                }
+            }
+            for Image { node, of, .. } in self.constraint.images() {
+                let either = touched[node.index()] || touched[of.index()];
+                (touched[node.index()], touched[of.index()]) = (either, either);
+            }
+            for (e, active) in active.iter_mut().enumerate() {
+                *active |= self.problem.nodes(e).iter().any(|n| touched[n.index()]);
+            }
+        }
+        (0..active.len()).filter(|&e| active[e]).collect()
+    }
+
     /// One round: a survey dense enough, a descent, and what it gained.
     fn round(&mut self, active: &[usize], x: &mut [DVec3]) {
         let before = self.standing();
         self.densify(active, x);
-        let patch = Patch::new(self.problem, active, &self.density);
+        let patch = Patch::new(self.problem, active, &self.density, self.constraint.images());
         self.best.note(&patch, x, &self.costs);
         self.descend(&patch, x);
         self.survey(&patch.elements, x);
@@ -412,22 +434,4 @@ impl Stage {
     fn cost(self, cost: &ElementCost) -> f64 {
         if self == Stage::Shape { cost.c_wcn } else { cost.worst() }
     }
-}
-
-/// Elements with a cost below its level (`C_WCN`, `C_JAC`), and rings of elements around them.
-fn activate(problem: &Problem, costs: &[ElementCost], stage: Stage, levels: [f64; 2], rings: usize) -> Vec<usize> {
-    let below = |c: &ElementCost| c.c_wcn < levels[0] || (stage == Stage::Full && c.c_jac < levels[1]);
-    let mut active: Vec<bool> = costs.iter().map(below).collect();
-    for _ in 0..rings {
-        let mut touched = vec![false; problem.node_count()];
-        for e in (0..active.len()).filter(|&e| active[e]) {
-            for node in problem.nodes(e) {
-                touched[node.index()] = true;
-            }
-        }
-        for (e, active) in active.iter_mut().enumerate() {
-            *active |= problem.nodes(e).iter().any(|n| touched[n.index()]);
-        }
-    }
-    (0..active.len()).filter(|&e| active[e]).collect()
 }
