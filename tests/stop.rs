@@ -6,7 +6,10 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use sagitta::certify::{self, Settings};
+use sagitta::element::Order;
 use sagitta::formats;
+use sagitta::pipeline::{self, Job, Observer, Step};
+use sagitta::smooth::Progress;
 
 fn curve(out: &Path, more: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_sagitta"));
@@ -46,4 +49,31 @@ fn an_interrupt_ends_smoothing() {
     assert_eq!(child.wait().unwrap().code(), Some(5), "{told}");
     assert!(told.contains("stopped early: interrupted"), "{told}");
     assert_valid(&out);
+}
+
+/// Ends the smoothing at P2, and lets it go on at higher orders.
+struct ImpatientAtP2 {
+    order: Order,
+}
+
+impl Observer for ImpatientAtP2 {
+    fn order(&mut self, order: Order) {
+        self.order = order;
+    }
+
+    fn step(&mut self, _: Step) {}
+
+    fn progress(&mut self, _: &Progress) -> bool {
+        self.order.get() != 2
+    }
+}
+
+#[test]
+fn a_run_that_was_ended_at_a_lower_order_counts_as_ended() {
+    let file = |end: &str| Path::new("fixtures/sphere_shell").join(format!("sphere_shell.{end}"));
+    let mut job = Job::new(file("msh"), file("step"), None, Order::new(3).unwrap());
+    job.reading.reader = env!("CARGO_BIN_EXE_sagitta").into();
+    let curved = pipeline::curve(&job, &mut ImpatientAtP2 { order: Order::LINEAR }).unwrap();
+    assert!(curved.lower_orders[0].stopped, "{:?}", curved.lower_orders);
+    assert!(curved.smoothed.stopped && curved.certificate.holds());
 }
