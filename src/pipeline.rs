@@ -249,8 +249,8 @@ pub struct Curved {
 pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineError> {
     let mut clock = Clock::new(observer);
     clock.step(Step::Read);
-    let mut linear = read_linear(&job.mesh)?;
-    let model = read_model(job)?;
+    let (linear, model) = rayon::join(|| read_linear(&job.mesh), || read_model(job));
+    let (mut linear, model) = (linear?, model?);
 
     clock.step(Step::Associate);
     let boundary = Boundary::new(&linear);
