@@ -4,14 +4,18 @@
 //! Linear nodes keep their places and numbers; a new node is made when its carrier (the edge, face or cell that it
 //! lies in) is first met, entities of low dimension first, so that it is classified on the lowest one that holds it.
 
+use std::ops::Range;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::element::{Cell, InteriorSlots, Order, basis, canonical, interior_start};
 use crate::mesh::{Block, EntityKey, Mesh, NodeId, TooMany};
 
-/// Carriers whose new nodes are placed at a time: what they take while they wait does not grow with the mesh.
-const BATCH: usize = 1 << 16;
+/// Elements whose sides are looked up at a time: what they take while they wait does not grow with the mesh.
+const BATCH: usize = 1 << 12;
+/// Elements or carriers that are worth a task of their own.
+const TASK: usize = 256;
 
 /// An elevated mesh and where its new nodes came from.
 #[derive(Clone, Debug)]
@@ -48,11 +52,11 @@ struct Chains {
 }
 
 impl Chains {
-    /// The carrier with these corners in canonical order.
-    fn find(&self, carriers: &Carriers, corners: &[NodeId]) -> Option<NodeId> {
+    /// The first new node of the carrier with these corners in canonical order, sought among the carriers from `since` on.
+    fn find(&self, carriers: &Carriers, corners: &[NodeId], since: usize) -> Option<NodeId> {
         let stride = corners.len();
         let mut at = *self.newest.get(corners[0].index())?;
-        while at != u32::MAX {
+        while at != u32::MAX && at as usize >= since {
             let own = at as usize;
             if carriers.corners[own * stride..][..stride] == *corners {
                 return Some(carriers.first[own]);
@@ -115,6 +119,38 @@ impl Carriers {
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (&[NodeId], NodeId)> {
         self.corners.chunks_exact(self.cell.corner_count()).zip(self.first.iter().copied())
     }
+
+    /// Lets `write` give values to the new nodes inside each carrier, many at once. `values` are those of the nodes from number
+    /// `offset` on, the number of linear nodes; carriers behind their end are left out.
+    pub fn fill<T: Send>(&self, values: &mut [T], offset: usize, write: &(impl Fn(usize, &mut [T]) + Sync)) {
+        let end = offset + values.len();
+        let held = self.first.partition_point(|first| first.index() + self.inside() <= end);
+        if self.inside() > 0 {
+            self.fill_some(0..held, values, offset, write);
+        }
+    }
+
+    /// [`Carriers::fill`] for some carriers: the numbers of their nodes rise, so that half of them is a part of the values.
+    fn fill_some<T: Send>(
+        &self,
+        some: Range<usize>,
+        values: &mut [T],
+        offset: usize,
+        write: &(impl Fn(usize, &mut [T]) + Sync),
+    ) {
+        if some.len() <= TASK {
+            return some.for_each(|carrier| {
+                write(carrier, &mut values[self.first[carrier].index() - offset..][..self.inside()]);
+            });
+        }
+        let middle = some.start + some.len() / 2;
+        let border = self.first[middle].index();
+        let (low, high) = values.split_at_mut(border - offset);
+        rayon::join(
+            || self.fill_some(some.start..middle, low, offset, write),
+            || self.fill_some(middle..some.end, high, border, write),
+        );
+    }
 }
 
 /// Elevates a linear mesh.
@@ -150,6 +186,24 @@ struct Builder {
     slots: [InteriorSlots; Cell::ALL.len()],
 }
 
+/// An edge or face of a cell that holds new nodes.
+struct Side {
+    cell: Cell,
+    /// Its corners among the cell's.
+    corners: Vec<u8>,
+}
+
+/// A side of an element.
+#[derive(Clone, Copy, Default)]
+struct Seat {
+    /// Its corners in canonical order.
+    key: [NodeId; 4],
+    /// That order, as positions in the corners as the element sees them.
+    seen: [u8; 4],
+    /// The first of its new nodes; [`NodeId::NONE`] until it is known.
+    first: NodeId,
+}
+
 impl Builder {
     fn new(linear: &Mesh, order: Order) -> Builder {
         let mesh = Mesh {
@@ -168,76 +222,110 @@ impl Builder {
         };
         let next_tag = linear.node_tags.iter().max().map_or(1, |tag| tag + 1);
         let carriers = Cell::ALL.iter().map(|&cell| Carriers::new(cell, order)).collect();
-        let (linear_nodes, chains, slots) = (linear.points.len(), Default::default(), Default::default());
+        let slots = Cell::ALL.map(|cell| InteriorSlots::new(cell, order));
+        let (linear_nodes, chains) = (linear.points.len(), Default::default());
         Builder { order, mesh, next_tag, carriers, linear_nodes, chains, slots }
     }
 
+    /// Elevates a block: by batches of elements, whose sides are looked up and whose nodes are listed on all threads; between
+    /// the two the new nodes are made, one after the other.
     fn block(&mut self, linear: &Block) -> Result<Block, TooMany> {
-        let mut nodes = Vec::with_capacity(linear.tags.len() * linear.cell.node_count(self.order));
-        for corners in linear.elements(Order::LINEAR) {
-            self.element(linear.cell, corners, linear.entity, &mut nodes)?;
+        let (corners, stride) = (linear.cell.corner_count(), linear.cell.node_count(self.order));
+        let sides = self.sides(linear.cell);
+        let mut nodes = vec![NodeId::default(); linear.nodes.len() / corners * stride];
+        let mut seats = Vec::new();
+        for (elements, nodes) in linear.nodes.chunks(BATCH * corners).zip(nodes.chunks_mut(BATCH * stride)) {
+            self.look_up(linear.cell, &sides, elements, &mut seats);
+            let made = self.carriers[linear.cell as usize].len();
+            self.make(linear, &sides, elements, &mut seats)?;
+            self.list(linear.cell, &sides, elements, &seats, made, nodes)?;
         }
         Ok(Block { nodes, ..linear.clone() })
     }
 
-    /// Appends an element's nodes, making those that are new.
-    fn element(
-        &mut self,
-        cell: Cell,
-        corners: &[NodeId],
-        entity: EntityKey,
-        nodes: &mut Vec<NodeId>,
-    ) -> Result<(), TooMany> {
-        nodes.extend_from_slice(corners);
-        for &[a, b] in cell.edges() {
-            let ends = [corners[usize::from(a)], corners[usize::from(b)]];
-            self.shared(Cell::Line, &ends, entity, nodes)?;
-        }
-        for face in cell.faces() {
-            let mut seen = [NodeId::default(); 4];
-            for (slot, &corner) in seen.iter_mut().zip(face.corners) {
-                *slot = corners[usize::from(corner)];
+    /// The sides of a cell that hold new nodes, in the order of these nodes.
+    fn sides(&self, cell: Cell) -> Vec<Side> {
+        let edges = cell.edges().iter().map(|edge| Side { cell: Cell::Line, corners: edge.to_vec() });
+        let faces = cell.faces().iter().map(|face| Side { cell: face.cell, corners: face.corners.to_vec() });
+        edges.chain(faces).filter(|side| self.carriers[side.cell as usize].inside() > 0).collect()
+    }
+
+    /// Finds the sides of elements among the carriers made so far.
+    fn look_up(&self, cell: Cell, sides: &[Side], elements: &[NodeId], seats: &mut Vec<Seat>) {
+        seats.clear();
+        seats.resize(elements.len() / cell.corner_count() * sides.len(), Seat::default());
+        let of_element = seats.par_chunks_mut(sides.len().max(1)).with_min_len(TASK);
+        of_element.zip(elements.par_chunks(cell.corner_count())).for_each(|(seats, element)| {
+            for (seat, side) in seats.iter_mut().zip(sides) {
+                *seat = self.seat(side, element);
             }
-            self.shared(face.cell, &seen[..face.corners.len()], entity, nodes)?;
+        });
+    }
+
+    fn seat(&self, side: &Side, element: &[NodeId]) -> Seat {
+        let mut corners = [NodeId::NONE; 4];
+        for (slot, &q) in corners.iter_mut().zip(&side.corners) {
+            *slot = element[usize::from(q)];
         }
-        if cell.dimension() == 3 && self.carriers[cell as usize].inside() > 0 {
-            let first = self.create(cell, corners, entity)?;
-            for node in first.index()..first.index() + self.carriers[cell as usize].inside() {
-                nodes.push(NodeId::new(node)?);
+        let count = side.corners.len();
+        let seen = canonical(&corners[..count]);
+        let key = seen.map(|q| corners[usize::from(q)]);
+        let first = self.chains[side.cell as usize].find(&self.carriers[side.cell as usize], &key[..count], 0);
+        Seat { key, seen, first: first.unwrap_or(NodeId::NONE) }
+    }
+
+    /// Makes the new nodes of the sides that were not found, and those inside the elements.
+    fn make(&mut self, linear: &Block, sides: &[Side], elements: &[NodeId], seats: &mut [Seat]) -> Result<(), TooMany> {
+        let (cell, entity) = (linear.cell, linear.entity);
+        let since: [usize; Cell::ALL.len()] = std::array::from_fn(|cell| self.carriers[cell].len());
+        for (n, corners) in elements.chunks(cell.corner_count()).enumerate() {
+            let seats = &mut seats[n * sides.len()..][..sides.len()];
+            for (seat, side) in seats.iter_mut().zip(sides).filter(|(seat, _)| seat.first == NodeId::NONE) {
+                let (kind, key) = (side.cell as usize, &seat.key[..side.corners.len()]);
+                let known = self.chains[kind].find(&self.carriers[kind], key, since[kind]);
+                seat.first = match known {
+                    Some(first) => first,
+                    None => {
+                        let first = self.create(side.cell, key, entity)?;
+                        self.chains[kind].push(self.linear_nodes, key[0]);
+                        first
+                    }
+                };
+            }
+            if cell.dimension() == 3 && self.carriers[cell as usize].inside() > 0 {
+                self.create(cell, corners, entity)?;
             }
         }
         Ok(())
     }
 
-    /// Appends the interior nodes of an edge or a face, in the order in which this element sees them.
-    fn shared(
-        &mut self,
+    /// Lists the nodes of elements; `made` is the number of carriers of their kind before the first of them.
+    fn list(
+        &self,
         cell: Cell,
-        corners: &[NodeId],
-        entity: EntityKey,
-        nodes: &mut Vec<NodeId>,
+        sides: &[Side],
+        elements: &[NodeId],
+        seats: &[Seat],
+        made: usize,
+        nodes: &mut [NodeId],
     ) -> Result<(), TooMany> {
-        if self.carriers[cell as usize].inside() == 0 {
-            return Ok(());
-        }
-        let seen = canonical(corners);
-        let mut key = [NodeId::NONE; 4];
-        for (slot, &q) in key.iter_mut().zip(&seen[..corners.len()]) {
-            *slot = corners[usize::from(q)];
-        }
-        let key = &key[..corners.len()];
-        let first = match self.chains[cell as usize].find(&self.carriers[cell as usize], key) {
-            Some(first) => first,
-            None => {
-                let first = self.create(cell, key, entity)?;
-                self.chains[cell as usize].push(self.linear_nodes, key[0]);
-                first
+        let (corners, inner) = (cell.corner_count(), &self.carriers[cell as usize]);
+        let of_element = nodes.par_chunks_mut(cell.node_count(self.order)).with_min_len(TASK).enumerate();
+        of_element.zip(elements.par_chunks(corners)).try_for_each(|((n, nodes), element)| {
+            nodes[..corners].copy_from_slice(element);
+            let mut rest = nodes[corners..].iter_mut();
+            for (seat, side) in seats[n * sides.len()..].iter().zip(sides) {
+                for (slot, node) in self.slots[side.cell as usize].of(seat.seen).iter().zip(rest.by_ref()) {
+                    *node = NodeId::new(seat.first.index() + slot)?;
+                }
             }
-        };
-        for slot in self.slots[cell as usize].of(cell, self.order, seen) {
-            nodes.push(NodeId::new(first.index() + slot)?);
-        }
-        Ok(())
+            if let Some(first) = inner.first.get(made + n).filter(|_| cell.dimension() == 3) {
+                for (node, place) in rest.zip(first.index()..) {
+                    *node = NodeId::new(place)?;
+                }
+            }
+            Ok(())
+        })
     }
 
     /// Makes a carrier's new nodes; their places are computed at the end.
@@ -259,20 +347,14 @@ impl Builder {
     fn place(&mut self) {
         let points = &mut self.mesh.points;
         points.resize(self.mesh.node_tags.len(), DVec3::ZERO);
-        for carriers in self.carriers.iter().filter(|carriers| carriers.inside() > 0) {
-            for begin in (0..carriers.len()).step_by(BATCH) {
-                let batch = begin..carriers.len().min(begin + BATCH);
-                let straight = |carrier: usize| {
-                    let (corners, _) = carriers.get(carrier);
-                    let at =
-                        |weights: &Vec<f64>| corners.iter().zip(weights).map(|(n, &w)| points[n.index()] * w).sum();
-                    carriers.weights.iter().map(at).collect::<Vec<DVec3>>()
-                };
-                let own: Vec<Vec<DVec3>> = batch.clone().into_par_iter().with_min_len(256).map(straight).collect();
-                for (carrier, own) in batch.zip(own) {
-                    points[carriers.first[carrier].index()..][..own.len()].copy_from_slice(&own);
+        let (linear, new) = points.split_at_mut(self.linear_nodes);
+        for carriers in &self.carriers {
+            carriers.fill(new, self.linear_nodes, &|carrier, inside| {
+                let (corners, _) = carriers.get(carrier);
+                for (point, weights) in inside.iter_mut().zip(&carriers.weights) {
+                    *point = corners.iter().zip(weights).map(|(n, &w)| linear[n.index()] * w).sum();
                 }
-            }
+            });
         }
     }
 }

@@ -8,12 +8,23 @@ use super::{Cell, Order, lattice};
 #[must_use]
 pub fn canonical<T: Ord + Copy>(corners: &[T]) -> [u8; 4] {
     let n = corners.len();
+    if let &[a, b] = corners {
+        return around(2, usize::from(b < a), true);
+    }
     let first = (0..n).min_by_key(|&q| corners[q]).unwrap_or(0);
     let (next, previous) = ((first + 1) % n, (first + n - 1) % n);
-    let forward = n < 3 || corners[next] < corners[previous];
-    std::array::from_fn(|step| {
-        let step = step % n.max(1);
-        (if forward { first + step } else { first + n - step } % n) as u8
+    around(n, first, corners[next] < corners[previous])
+}
+
+/// The positions of `n` corners from the first on, one way round or the other, and over again.
+fn around(n: usize, first: usize, forward: bool) -> [u8; 4] {
+    let step = if forward || n < 3 { 1 } else { n - 1 };
+    let mut at = first;
+    std::array::from_fn(|_| {
+        let position = at as u8;
+        at += step;
+        at -= if at >= n { n } else { 0 };
+        position
     })
 }
 
@@ -41,18 +52,32 @@ pub fn interior_slots(cell: Cell, order: Order, seen: [u8; 4]) -> Vec<usize> {
         .collect()
 }
 
-/// [`interior_slots`] of one cell and order, each computed when it is first asked for.
-#[derive(Clone, Debug, Default)]
+/// [`interior_slots`] of one cell and order, for all ways in which its corners can be seen.
+#[derive(Clone, Debug)]
 pub struct InteriorSlots {
     /// By the first two corners as they are seen: they tell the others.
-    known: [[Option<Vec<usize>>; 4]; 4],
+    known: [[Vec<usize>; 4]; 4],
 }
 
 impl InteriorSlots {
-    /// The slots for corners in the order `seen`; always of the same cell and order.
-    pub fn of(&mut self, cell: Cell, order: Order, seen: [u8; 4]) -> &[usize] {
-        let own = &mut self.known[usize::from(seen[0])][usize::from(seen[1])];
-        own.get_or_insert_with(|| interior_slots(cell, order, seen))
+    /// The slots of a line, triangle or quadrilateral; none for other cells.
+    #[must_use]
+    pub fn new(cell: Cell, order: Order) -> InteriorSlots {
+        let corners = cell.corner_count();
+        let mut known: [[Vec<usize>; 4]; 4] = Default::default();
+        for first in (0..corners).filter(|_| matches!(cell.dimension(), 1 | 2)) {
+            for forward in [true, false] {
+                let seen = around(corners, first, forward);
+                known[usize::from(seen[0])][usize::from(seen[1])] = interior_slots(cell, order, seen);
+            }
+        }
+        InteriorSlots { known }
+    }
+
+    /// The slots for corners in the order `seen`.
+    #[must_use]
+    pub fn of(&self, seen: [u8; 4]) -> &[usize] {
+        &self.known[usize::from(seen[0])][usize::from(seen[1])]
     }
 }
 
