@@ -3,7 +3,6 @@
 use cad::{Aabb, BoxTree};
 use glam::DVec3;
 
-use super::roots::roots;
 use crate::element::{Cell, Order, basis};
 use crate::elevate::Elevated;
 use crate::mesh::NodeId;
@@ -59,17 +58,19 @@ struct Foot {
 }
 
 impl<'a> Field<'a> {
+    /// The field of `wall`, whose nodes have these displacements: `seeds` tells which linear nodes are wall vertices, `roots`
+    /// which of them each linear node hangs on.
     pub(super) fn new(
         elevated: &'a Elevated,
         wall: &'a [WallFace],
         displacement: &'a [DVec3],
         seeds: &[bool],
+        roots: Vec<Option<u32>>,
         inherited: &[f64],
         beyond: &[bool],
     ) -> Field<'a> {
         let (mesh, linear_nodes) = (&elevated.mesh, elevated.linear_nodes);
         let (starts, around) = faces_around(wall, linear_nodes);
-        let roots = roots(elevated, seeds);
         let points = &mesh.points[..];
         let sought: Vec<u32> =
             (0..wall.len() as u32).filter(|&f| wall[f as usize].corners().iter().all(|n| seeds[n.index()])).collect();

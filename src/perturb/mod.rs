@@ -42,21 +42,16 @@
 mod field;
 mod roots;
 
-use std::ops::Range;
-
 use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::associate::{Association, Boundary, Host};
-use crate::elevate::{Carriers, Elevated};
-use crate::mesh::NodeId;
+use crate::elevate::Elevated;
 use crate::periodic::Ties;
 use crate::project::Projected;
 use field::Field;
 pub use field::WallFace;
-
-/// Carriers whose nodes are carried at a time: what they take while they wait does not grow with the mesh.
-const BATCH: usize = 1 << 16;
+use roots::Graph;
 
 /// Places of all nodes: boundary nodes where projection put them, planes and volume carried along.
 #[must_use]
@@ -79,29 +74,33 @@ pub fn perturb(
         return sum(elevated, association, projected, displacement);
     }
 
-    let mut seeds = vec![false; linear];
-    wall.iter().flat_map(WallFace::corners).for_each(|n| seeds[n.index()] = true);
+    let on = |faces: &[WallFace]| {
+        let mut marked = vec![false; linear];
+        faces.iter().flat_map(WallFace::corners).for_each(|n| marked[n.index()] = true);
+        marked
+    };
+    let seeds = on(&wall);
+    let planes = wall_faces(elevated, boundary, |f| planar(association.faces[f]));
+    let graph = Graph::new(elevated);
+    let mut all_seeds = graph.walls_of_their_own(|n| planar(host(n)), &on(&planes));
+    all_seeds.iter_mut().zip(&seeds).for_each(|(all, seed)| *all |= seed);
+    let (roots, all_roots) = rayon::join(|| graph.roots(&seeds), || graph.roots(&all_seeds));
+    drop(graph);
+
     let in_plane = |n: usize| n >= linear && planar(host(n));
-    let field = Field::new(elevated, &wall, &displacement, &seeds, &[], &projected.beyond);
+    let field = Field::new(elevated, &wall, &displacement, &seeds, roots, &[], &projected.beyond);
     let reach = field.reach_of_roots();
     let mut carried = carry(&field, elevated, displacement.clone(), in_plane);
-    for (n, d) in carried.iter_mut().enumerate().skip(linear) {
+    carried.par_iter_mut().enumerate().skip(linear).for_each(|(n, d)| {
         if let Some(plane) = association.plane_of(host(n)) {
             *d = plane.closest(elevated.mesh.points[n] + *d) - elevated.mesh.points[n];
         }
-    }
+    });
     displacement = carried;
     ties.carry(&elevated.mesh.points, &mut displacement);
 
-    let planes = wall_faces(elevated, boundary, |f| planar(association.faces[f]));
-    let mut on_plane = vec![false; linear];
-    planes.iter().flat_map(WallFace::corners).for_each(|n| on_plane[n.index()] = true);
-    let own_wall = roots::walls_of_their_own(elevated, |n| planar(host(n)), &on_plane);
-    for (seed, own) in seeds.iter_mut().zip(own_wall) {
-        *seed |= own;
-    }
     wall.extend(planes);
-    let field = Field::new(elevated, &wall, &displacement, &seeds, &reach, &projected.beyond);
+    let field = Field::new(elevated, &wall, &displacement, &all_seeds, all_roots, &reach, &projected.beyond);
     let mut whole = displacement.clone();
     whole.resize(nodes, DVec3::ZERO);
     let whole = carry(&field, elevated, whole, |n| host(n) == Host::Free);
@@ -115,12 +114,12 @@ fn sum(
     projected: &Projected,
     mut displacement: Vec<DVec3>,
 ) -> Vec<DVec3> {
-    for (n, (place, straight)) in displacement.iter_mut().zip(&elevated.mesh.points).enumerate() {
+    displacement.par_iter_mut().zip(&elevated.mesh.points).enumerate().for_each(|(n, (place, straight))| {
         *place += *straight;
         if n >= elevated.linear_nodes {
             *place = association.plane_of(projected.host(n)).map_or(*place, |plane| plane.closest(*place));
         }
-    }
+    });
     displacement
 }
 
@@ -139,47 +138,20 @@ fn wall_faces(elevated: &Elevated, boundary: &Boundary, of: impl Fn(usize) -> bo
 /// Displacements of all nodes: those that `follows` from the field, the others as given.
 fn carry(field: &Field, elevated: &Elevated, given: Vec<DVec3>, follows: impl Fn(usize) -> bool + Sync) -> Vec<DVec3> {
     let mut result = given;
-    let vertices: Vec<DVec3> = (0..elevated.linear_nodes)
-        .into_par_iter()
-        .map(|n| if follows(n) { field.at(&[n], &[1.0]) } else { result[n] })
-        .collect();
-    result[..elevated.linear_nodes].copy_from_slice(&vertices);
+    let offset = elevated.linear_nodes;
+    let (vertices, new) = result.split_at_mut(offset);
+    vertices.par_iter_mut().enumerate().filter(|(n, _)| follows(*n)).for_each(|(n, d)| *d = field.at(&[n], &[1.0]));
     for carriers in &elevated.carriers {
-        for first in (0..carriers.len()).step_by(BATCH) {
-            let batch = first..carriers.len().min(first + BATCH);
-            carry_inside(field, carriers, batch, &follows, &mut result);
-        }
+        carriers.fill(new, offset, &|carrier, inside| {
+            let (corners, first) = carriers.get(carrier);
+            let mut ends = [0; 8];
+            ends.iter_mut().zip(corners).for_each(|(end, corner)| *end = corner.index());
+            for ((d, weights), node) in inside.iter_mut().zip(carriers.weights()).zip(first.index()..) {
+                if follows(node) {
+                    *d = field.at(&ends[..corners.len()], weights);
+                }
+            }
+        });
     }
     result
-}
-
-/// Displacements of the nodes inside some edges, faces or cells of one kind.
-fn carry_inside(
-    field: &Field,
-    carriers: &Carriers,
-    batch: Range<usize>,
-    follows: &(impl Fn(usize) -> bool + Sync),
-    result: &mut [DVec3],
-) {
-    let inside = |first: NodeId| first.index()..first.index() + carriers.inside();
-    let own: Vec<Vec<DVec3>> = batch
-        .clone()
-        .into_par_iter()
-        .with_min_len(256)
-        .map(|carrier| {
-            let (corners, first) = carriers.get(carrier);
-            if !inside(first).any(follows) {
-                return Vec::new();
-            }
-            let corners: Vec<usize> = corners.iter().map(|c| c.index()).collect();
-            carriers.weights().iter().map(|weights| field.at(&corners, weights)).collect()
-        })
-        .collect();
-    for (carrier, own) in batch.zip(own) {
-        for (node, d) in inside(carriers.get(carrier).1).zip(own) {
-            if follows(node) {
-                result[node] = d;
-            }
-        }
-    }
 }

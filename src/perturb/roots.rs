@@ -3,56 +3,90 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+use glam::DVec3;
+use rayon::prelude::*;
+
 use crate::element::Cell;
 use crate::elevate::Elevated;
 
-/// For every linear node the seed at the end of the shortest path along mesh edges (Dijkstra from all seeds at once; ties
-/// go to the smaller seed); `None` where no path leads to one.
-pub(super) fn roots(elevated: &Elevated, seeds: &[bool]) -> Vec<Option<u32>> {
-    let (mesh, linear_nodes) = (&elevated.mesh, elevated.linear_nodes);
-    let (starts, neighbours) = neighbours(elevated);
-    let mut roots: Vec<Option<u32>> = vec![None; linear_nodes];
-    let mut length = vec![f64::INFINITY; linear_nodes];
-    let mut queue = BinaryHeap::new();
-    for node in (0..linear_nodes).filter(|&n| seeds[n]) {
-        length[node] = 0.0;
-        queue.push(Reverse((Length(0.0), node as u32, node as u32)));
-    }
-    while let Some(Reverse((Length(so_far), root, node))) = queue.pop() {
-        let node = node as usize;
-        if roots[node].is_some() {
-            continue;
-        }
-        roots[node] = Some(root);
-        for &next in &neighbours[starts[node] as usize..starts[node + 1] as usize] {
-            let further = so_far + mesh.points[node].distance(mesh.points[next as usize]);
-            if further < length[next as usize] || (further == length[next as usize] && roots[next as usize].is_none()) {
-                length[next as usize] = further;
-                queue.push(Reverse((Length(further), root, next)));
-            }
-        }
-    }
-    roots
+/// The mesh edges at each linear node.
+pub(super) struct Graph<'a> {
+    points: &'a [DVec3],
+    /// Nodes at the other ends of the edges, rising: ranges of `neighbours`, by node.
+    starts: Vec<u32>,
+    neighbours: Vec<u32>,
 }
 
-/// Which linear nodes of planes are walls of their own: the shortest mesh edge there leaves the planes.
-///
-/// `in_plane` tells which nodes a plane holds, `on_plane` which lie on one, its rim too: at a symmetry plane the shortest
-/// edges of the first layer lead to the rim, the wall's own curve.
-pub(super) fn walls_of_their_own(
-    elevated: &Elevated,
-    in_plane: impl Fn(usize) -> bool,
-    on_plane: &[bool],
-) -> Vec<bool> {
-    let points = &elevated.mesh.points;
-    let (starts, neighbours) = neighbours(elevated);
-    let own_wall = |n: usize| {
-        let around = &neighbours[starts[n] as usize..starts[n + 1] as usize];
-        let length = |&&m: &&u32| points[n].distance(points[m as usize]);
-        let nearest = around.iter().min_by(|a, b| length(a).total_cmp(&length(b)));
-        in_plane(n) && nearest.is_some_and(|&m| !on_plane[m as usize])
-    };
-    (0..elevated.linear_nodes).map(own_wall).collect()
+impl<'a> Graph<'a> {
+    pub(super) fn new(elevated: &'a Elevated) -> Graph<'a> {
+        let linear_nodes = elevated.linear_nodes;
+        let edges =
+            || elevated.carriers[Cell::Line as usize].iter().map(|(ends, _)| [ends[0].index(), ends[1].index()]);
+        let mut starts = vec![0u32; linear_nodes + 1];
+        edges().flatten().for_each(|n| starts[n + 1] += 1);
+        for n in 0..linear_nodes {
+            starts[n + 1] += starts[n];
+        }
+        let mut next = starts.clone();
+        let mut neighbours = vec![0; starts[linear_nodes] as usize];
+        for [a, b] in edges() {
+            for (from, to) in [(a, b), (b, a)] {
+                neighbours[next[from] as usize] = to as u32;
+                next[from] += 1;
+            }
+        }
+        for n in 0..linear_nodes {
+            neighbours[starts[n] as usize..starts[n + 1] as usize].sort_unstable();
+        }
+        Graph { points: &elevated.mesh.points[..linear_nodes], starts, neighbours }
+    }
+
+    fn around(&self, node: usize) -> &[u32] {
+        &self.neighbours[self.starts[node] as usize..self.starts[node + 1] as usize]
+    }
+
+    /// For every linear node the seed at the end of the shortest path along mesh edges (Dijkstra from all seeds at once; ties
+    /// go to the smaller seed); `None` where no path leads to one.
+    pub(super) fn roots(&self, seeds: &[bool]) -> Vec<Option<u32>> {
+        let linear_nodes = self.points.len();
+        let mut roots: Vec<Option<u32>> = vec![None; linear_nodes];
+        let mut length = vec![f64::INFINITY; linear_nodes];
+        let mut queue = BinaryHeap::new();
+        for node in (0..linear_nodes).filter(|&n| seeds[n]) {
+            length[node] = 0.0;
+            queue.push(Reverse((Length(0.0), node as u32, node as u32)));
+        }
+        while let Some(Reverse((Length(so_far), root, node))) = queue.pop() {
+            let node = node as usize;
+            if roots[node].is_some() {
+                continue;
+            }
+            roots[node] = Some(root);
+            for &next in self.around(node) {
+                let further = so_far + self.points[node].distance(self.points[next as usize]);
+                if further < length[next as usize]
+                    || (further == length[next as usize] && roots[next as usize].is_none())
+                {
+                    length[next as usize] = further;
+                    queue.push(Reverse((Length(further), root, next)));
+                }
+            }
+        }
+        roots
+    }
+
+    /// Which linear nodes of planes are walls of their own: the shortest mesh edge there leaves the planes.
+    ///
+    /// `in_plane` tells which nodes a plane holds, `on_plane` which lie on one, its rim too: at a symmetry plane the shortest
+    /// edges of the first layer lead to the rim, the wall's own curve.
+    pub(super) fn walls_of_their_own(&self, in_plane: impl Fn(usize) -> bool + Sync, on_plane: &[bool]) -> Vec<bool> {
+        let own_wall = |n: usize| {
+            let length = |&&m: &&u32| self.points[n].distance(self.points[m as usize]);
+            let nearest = || self.around(n).iter().min_by(|a, b| length(a).total_cmp(&length(b)));
+            in_plane(n) && nearest().is_some_and(|&m| !on_plane[m as usize])
+        };
+        (0..self.points.len()).into_par_iter().map(own_wall).collect()
+    }
 }
 
 /// A path's length, ordered.
@@ -71,27 +105,4 @@ impl Ord for Length {
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {
         self.0.total_cmp(&other.0)
     }
-}
-
-/// Nodes at the other ends of the mesh edges at each linear node, rising.
-fn neighbours(elevated: &Elevated) -> (Vec<u32>, Vec<u32>) {
-    let linear_nodes = elevated.linear_nodes;
-    let edges = || elevated.carriers[Cell::Line as usize].iter().map(|(ends, _)| [ends[0].index(), ends[1].index()]);
-    let mut starts = vec![0u32; linear_nodes + 1];
-    edges().flatten().for_each(|n| starts[n + 1] += 1);
-    for n in 0..linear_nodes {
-        starts[n + 1] += starts[n];
-    }
-    let mut next = starts.clone();
-    let mut neighbours = vec![0; starts[linear_nodes] as usize];
-    for [a, b] in edges() {
-        for (from, to) in [(a, b), (b, a)] {
-            neighbours[next[from] as usize] = to as u32;
-            next[from] += 1;
-        }
-    }
-    for n in 0..linear_nodes {
-        neighbours[starts[n] as usize..starts[n + 1] as usize].sort_unstable();
-    }
-    (starts, neighbours)
 }
