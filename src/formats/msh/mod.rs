@@ -202,7 +202,12 @@ fn end_section(scanner: &mut Scanner<impl BufRead>, section: &'static str) -> Re
 }
 
 /// Writes a mesh. Equal meshes make equal bytes.
-pub(super) fn write(out: &mut impl Write, mesh: &Mesh, version: Version, encoding: Encoding) -> Result<(), Unwritten> {
+pub(super) fn write(
+    out: &mut (impl Write + Send),
+    mesh: &Mesh,
+    version: Version,
+    encoding: Encoding,
+) -> Result<(), Unwritten> {
     let number = if version == Version::V4_1 { "4.1" } else { "2.2" };
     let binary = encoding == Encoding::Binary;
     write!(out, "$MeshFormat\n{number} {} 8\n", u8::from(binary))?;

@@ -1,11 +1,24 @@
 //! Numbers to an MSH file, as text or as bytes.
 
 use std::io::{self, Write};
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+/// Rows that are in memory at a time, and rows that one task encodes.
+const BATCH: usize = 1 << 14;
+const TASK: usize = 1 << 10;
 
 /// Takes numbers in file order.
-pub(super) trait Sink {
+pub(super) trait Sink: Send {
     /// Whether the numbers are written as bytes.
     const BINARY: bool;
+    /// A sink into memory that encodes numbers in the same way.
+    type Memory<'b>: Sink;
+    /// That sink, at the start of a line.
+    fn memory(bytes: &mut Vec<u8>) -> Self::Memory<'_>;
+    /// Whole lines, encoded.
+    fn encoded(&mut self, bytes: &[u8]) -> io::Result<()>;
     /// A C `int`.
     fn int(&mut self, value: i32) -> io::Result<()>;
     /// A C `size_t`.
@@ -26,6 +39,31 @@ pub(super) trait Sink {
     /// Reals in a row.
     fn reals(&mut self, values: &[f64]) -> io::Result<()> {
         values.iter().try_for_each(|&value| self.real(value))
+    }
+
+    /// So many rows of whole lines: one batch is encoded, on all threads, while the one before is written.
+    fn rows(
+        &mut self,
+        count: usize,
+        row: impl Fn(&mut Self::Memory<'_>, usize) -> io::Result<()> + Sync,
+    ) -> io::Result<()> {
+        let encode = |rows: Range<usize>| -> io::Result<Vec<u8>> {
+            let mut bytes = Vec::new();
+            let mut sink = Self::memory(&mut bytes);
+            rows.into_iter().try_for_each(|n| row(&mut sink, n))?;
+            drop(sink);
+            Ok(bytes)
+        };
+        let mut ready: Vec<Vec<u8>> = Vec::new();
+        for first in (0..count).step_by(BATCH) {
+            let end = count.min(first + BATCH);
+            let tasks = (first..end).into_par_iter().step_by(TASK).map(|begin| encode(begin..end.min(begin + TASK)));
+            let write = || ready.iter().try_for_each(|bytes| self.encoded(bytes));
+            let (written, next) = rayon::join(write, || tasks.collect::<io::Result<_>>());
+            written?;
+            ready = next?;
+        }
+        ready.iter().try_for_each(|bytes| self.encoded(bytes))
     }
 
     /// Opens a section.
@@ -61,8 +99,15 @@ impl<'a, W: Write> TextSink<'a, W> {
     }
 }
 
-impl<W: Write> Sink for TextSink<'_, W> {
+impl<W: Write + Send> Sink for TextSink<'_, W> {
     const BINARY: bool = false;
+    type Memory<'b> = TextSink<'b, Vec<u8>>;
+    fn memory(bytes: &mut Vec<u8>) -> TextSink<'_, Vec<u8>> {
+        TextSink::new(bytes)
+    }
+    fn encoded(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.out.write_all(bytes)
+    }
     fn int(&mut self, value: i32) -> io::Result<()> {
         self.separate()?;
         write!(self.out, "{value}")
@@ -88,8 +133,15 @@ impl<W: Write> Sink for TextSink<'_, W> {
 /// Numbers as bytes, little-endian.
 pub(super) struct ByteSink<'a, W>(pub(super) &'a mut W);
 
-impl<W: Write> Sink for ByteSink<'_, W> {
+impl<W: Write + Send> Sink for ByteSink<'_, W> {
     const BINARY: bool = true;
+    type Memory<'b> = ByteSink<'b, Vec<u8>>;
+    fn memory(bytes: &mut Vec<u8>) -> ByteSink<'_, Vec<u8>> {
+        ByteSink(bytes)
+    }
+    fn encoded(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.0.write_all(bytes)
+    }
     fn int(&mut self, value: i32) -> io::Result<()> {
         self.0.write_all(&value.to_le_bytes())
     }

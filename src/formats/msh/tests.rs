@@ -194,10 +194,18 @@ fn binary_that_was_cut_off_is_told_at_every_length() {
 }
 
 /// Numbers as bytes in the order that [`ByteSink`] does not write.
-struct BigEndian(Vec<u8>);
+struct BigEndian<'a>(&'a mut Vec<u8>);
 
-impl Sink for BigEndian {
+impl Sink for BigEndian<'_> {
     const BINARY: bool = true;
+    type Memory<'b> = BigEndian<'b>;
+    fn memory(bytes: &mut Vec<u8>) -> BigEndian<'_> {
+        BigEndian(bytes)
+    }
+    fn encoded(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.0.extend(bytes);
+        Ok(())
+    }
     fn int(&mut self, value: i32) -> io::Result<()> {
         self.0.extend(value.to_be_bytes());
         Ok(())
@@ -223,9 +231,9 @@ impl Sink for BigEndian {
 fn both_byte_orders_are_read() {
     let mesh = parse([HEAD, NODES, ELEMENTS].concat().as_bytes()).unwrap();
     for (version, number) in [(Version::V4_1, "4.1"), (Version::V2_2, "2.2")] {
-        let mut sink = BigEndian(format!("$MeshFormat\n{number} 1 8\n\0\0\0\x01\n$EndMeshFormat\n").into_bytes());
-        write_sections(&mut sink, &mesh, version).unwrap();
-        let again = parse(&sink.0).unwrap();
+        let mut bytes = format!("$MeshFormat\n{number} 1 8\n\0\0\0\x01\n$EndMeshFormat\n").into_bytes();
+        write_sections(&mut BigEndian(&mut bytes), &mesh, version).unwrap();
+        let again = parse(&bytes).unwrap();
         assert_eq!((again.points, again.node_tags), (mesh.points.clone(), mesh.node_tags.clone()), "{number}");
         assert_eq!((&again.blocks[0].nodes, &again.blocks[0].tags), (&mesh.blocks[0].nodes, &mesh.blocks[0].tags));
     }

@@ -54,23 +54,23 @@ fn nodes(sink: &mut impl Sink, mesh: &Mesh, outline: &Outline) -> io::Result<()>
     sink.open("Nodes")?;
     head(sink, outline.runs.len(), mesh.node_tags.iter().copied())?;
     for run in &outline.runs {
-        let nodes = || run.places.clone().map(|place| outline.node(place));
+        let node = |n: usize| outline.node(run.places.start + n);
         sink.int(i32::from(run.entity.dimension))?;
         sink.int(run.entity.tag)?;
         sink.int(i32::from(run.parametric))?;
         sink.size(run.places.len() as u64)?;
         sink.end_line()?;
-        for node in nodes() {
-            sink.size(mesh.node_tags[node])?;
-            sink.end_line()?;
-        }
-        for node in nodes() {
-            sink.reals(&mesh.points[node].to_array())?;
-            if let Some(uv) = outline.parameters(node).filter(|_| run.parametric) {
+        sink.rows(run.places.len(), |sink, n| {
+            sink.size(mesh.node_tags[node(n)])?;
+            sink.end_line()
+        })?;
+        sink.rows(run.places.len(), |sink, n| {
+            sink.reals(&mesh.points[node(n)].to_array())?;
+            if let Some(uv) = outline.parameters(node(n)).filter(|_| run.parametric) {
                 sink.reals(&uv[..usize::from(run.entity.dimension)])?;
             }
-            sink.end_line()?;
-        }
+            sink.end_line()
+        })?;
     }
     sink.close("Nodes")
 }
@@ -85,13 +85,13 @@ fn elements(sink: &mut impl Sink, mesh: &Mesh, outline: &Outline) -> Result<(), 
         sink.int(type_code::gmsh(block.cell, mesh.order))?;
         sink.size(block.tags.len() as u64)?;
         sink.end_line()?;
-        for (&tag, nodes) in block.tags.iter().zip(block.elements(mesh.order)) {
-            sink.size(tag)?;
-            for &slot in slots {
-                sink.size(mesh.node_tags[nodes[usize::from(slot)].index()])?;
-            }
-            sink.end_line()?;
-        }
+        let stride = block.stride(mesh.order);
+        sink.rows(block.tags.len(), |sink, n| {
+            sink.size(block.tags[n])?;
+            let nodes = &block.nodes[n * stride..][..stride];
+            slots.iter().try_for_each(|&slot| sink.size(mesh.node_tags[nodes[usize::from(slot)].index()]))?;
+            sink.end_line()
+        })?;
     }
     Ok(sink.close("Elements")?)
 }
