@@ -18,6 +18,7 @@
 //! The paper's engine begins at the order itself, as the paper has it, and so does `--direct`.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::associate::{Association, Boundary, Host};
 use crate::checkpoint::{CheckpointError, Found};
@@ -33,6 +34,8 @@ use crate::smooth::{Engine, Problem, Progress, Smoothed, Summary, smooth};
 
 /// Weights of nodes that are as good as zero: a node on a face takes nothing from those off it.
 const NOTHING: f64 = 1e-13;
+/// Elements that are raised at a time: what they take while they wait does not grow with the mesh.
+const BATCH: usize = 1 << 12;
 
 /// What smoothing did at an order below the one asked for.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -89,7 +92,7 @@ pub(crate) struct Below {
 impl From<Level> for Below {
     fn from(level: Level) -> Below {
         let Level { ready: Ready { elevated: Elevated { mesh, .. }, .. }, mut places, .. } = level;
-        places.iter_mut().zip(&mesh.points).for_each(|(place, straight)| *place -= *straight);
+        places.par_iter_mut().zip(&mesh.points).for_each(|(place, straight)| *place -= *straight);
         let blocks = mesh.blocks.into_iter().map(|block| (block.cell, block.nodes)).collect();
         Below { order: mesh.order, blocks, moved: places }
     }
@@ -237,12 +240,12 @@ impl<'a> Ascent<'a> {
         };
         let raised = below.raised(&elevated.mesh);
         let mut rest = projected.clone();
-        for (n, (displacement, raised)) in rest.displacement.iter_mut().zip(&raised).enumerate() {
+        rest.displacement.par_iter_mut().zip(&raised).enumerate().for_each(|(n, (displacement, raised))| {
             let in_plane = self.association.plane_of(projected.host(n)).is_some();
             *displacement = if in_plane { DVec3::ZERO } else { *displacement - *raised };
-        }
+        });
         let mut places = carried(&rest);
-        for (n, (place, raised)) in places.iter_mut().zip(&raised).enumerate() {
+        places.par_iter_mut().zip(&raised).enumerate().for_each(|(n, (place, raised))| {
             let host = projected.host(n);
             let held = self.job.freeze_linear && n < elevated.linear_nodes;
             let plane = self.association.plane_of(host).filter(|_| !held);
@@ -251,7 +254,7 @@ impl<'a> Ascent<'a> {
                 (_, Some(plane)) => plane.closest(*place + *raised),
                 (_, None) => elevated.mesh.points[n] + projected.displacement[n],
             };
-        }
+        });
         ties.apply(&mut places);
         places
     }
@@ -261,16 +264,25 @@ impl Below {
     /// What moved each node of the straight mesh `above`, of a higher order and with the same elements.
     pub(crate) fn raised(&self, above: &Mesh) -> Vec<DVec3> {
         let mut raised = vec![DVec3::ZERO; above.points.len()];
+        let mut own = Vec::new();
         for (high, (cell, low)) in above.blocks.iter().zip(&self.blocks) {
             let mut weights = basis::at_lattice(*cell, self.order, above.order);
             weights.iter_mut().flatten().filter(|w| w.abs() < NOTHING).for_each(|w| *w = 0.0);
-            let low = low.chunks_exact(cell.node_count(self.order));
-            for (high, low) in high.elements(above.order).zip(low) {
-                if low.iter().all(|n| self.moved[n.index()] == DVec3::ZERO) {
-                    continue;
+            let strides = [high.stride(above.order), cell.node_count(self.order)];
+            let of_element = |(own, low): (&mut [DVec3], &[NodeId])| {
+                let still = low.iter().all(|n| self.moved[n.index()] == DVec3::ZERO);
+                for (own, weights) in own.iter_mut().zip(&weights).filter(|_| !still) {
+                    *own = low.iter().zip(weights).map(|(n, &w)| self.moved[n.index()] * w).sum();
                 }
-                for (node, weights) in high.iter().zip(&weights) {
-                    raised[node.index()] = low.iter().zip(weights).map(|(n, &w)| self.moved[n.index()] * w).sum();
+                !still
+            };
+            for (high, low) in high.nodes.chunks(BATCH * strides[0]).zip(low.chunks(BATCH * strides[1])) {
+                own.resize(high.len(), DVec3::ZERO);
+                let elements = own.par_chunks_exact_mut(strides[0]).zip(low.par_chunks_exact(strides[1]));
+                let moved: Vec<bool> = elements.with_min_len(64).map(of_element).collect();
+                let elements = high.chunks_exact(strides[0]).zip(own.chunks_exact(strides[0]));
+                for ((nodes, own), _) in elements.zip(moved).filter(|(_, moved)| *moved) {
+                    nodes.iter().zip(own).for_each(|(node, own)| raised[node.index()] = *own);
                 }
             }
         }
