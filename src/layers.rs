@@ -3,6 +3,7 @@
 use std::num::NonZeroUsize;
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::associate::{Association, Boundary, Host};
 use crate::elevate::Elevated;
@@ -56,5 +57,9 @@ pub fn leave_straight_beyond(
 #[must_use]
 pub fn straight_elements(mesh: &Mesh, straight: &[DVec3]) -> Vec<bool> {
     let is = |nodes: &[NodeId]| nodes.iter().all(|n| mesh.points[n.index()] == straight[n.index()]);
-    mesh.blocks_of(3).flat_map(|(_, block)| block.elements(mesh.order)).map(is).collect()
+    let mut elements = Vec::new();
+    for (_, block) in mesh.blocks_of(3) {
+        elements.par_extend(block.nodes.par_chunks_exact(block.stride(mesh.order)).map(is));
+    }
+    elements
 }

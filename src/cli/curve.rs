@@ -238,7 +238,8 @@ fn dry_run(job: &Job, report: Option<&Path>) -> Result<u8, Failure> {
 }
 
 fn write(options: &Options, output: &Path, curved: &Curved) -> Result<(), Failure> {
-    formats::write(output, &curved.mesh, &options.form.with(&fields(curved)))?;
+    let fields = if formats::shows_fields(output) { fields(curved) } else { Vec::new() };
+    formats::write(output, &curved.mesh, &options.form.with(&fields))?;
     Ok(())
 }
 

@@ -178,6 +178,12 @@ pub fn write_file(
     output::write_whole(path, |out| Ok(content(out)?))
 }
 
+/// Whether a file of this name would show [`WriteOptions::fields`].
+#[must_use]
+pub fn shows_fields(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("vtu"))
+}
+
 /// Writes a mesh file; the format is that of the name's extension.
 ///
 /// The file appears under its name only when it is complete. Equal meshes make equal bytes.

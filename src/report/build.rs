@@ -29,6 +29,8 @@ const DISTANCE_DENSITY: usize = 3;
 pub fn report(job: &Job, curved: &Curved) -> Report {
     let mesh = &curved.mesh;
     let linked = |host: &Host| matches!(host, Host::Surface(_));
+    let (turning, (cells, patches)) =
+        rayon::join(|| turning(curved), || rayon::join(|| cells(curved), || patches(curved)));
     Report {
         schema: SCHEMA,
         version: env!("CARGO_PKG_VERSION"),
@@ -42,12 +44,12 @@ pub fn report(job: &Job, curved: &Curved) -> Report {
         order: mesh.order.into(),
         certified: curved.certificate.holds(),
         nodes: Nodes { linear: curved.linear_nodes, curved: mesh.points.len() },
-        cells: cells(curved),
-        patches: patches(curved),
+        cells,
+        patches,
         unlinked_faces: curved.association.faces.iter().filter(|h| !linked(h)).count(),
         given_up: curved.given_up.iter().map(|given| given_up(curved, given)).collect(),
         walls: walls(curved),
-        turning: turning(curved),
+        turning,
         certificate: CertificateReport::new(mesh, &curved.certificate),
         smoothing: SmoothingReport {
             lower_orders: curved.lower_orders.clone(),
