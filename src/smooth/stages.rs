@@ -251,6 +251,9 @@ impl Run<'_, '_> {
     fn activate(&self, levels: [f64; 2], rings: usize) -> Vec<usize> {
         let full = self.pace.stage == Stage::Full;
         let below = |c: &ElementCost| c.c_wcn < levels[0] || (full && c.c_jac < levels[1]);
+        if !self.costs.iter().any(below) {
+            return Vec::new();
+        }
         let mut active: Vec<bool> = self.costs.iter().map(below).collect();
         for _ in 0..rings {
             let mut touched = vec![false; self.problem.node_count()];
