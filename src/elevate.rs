@@ -232,7 +232,7 @@ impl Builder {
     fn block(&mut self, linear: &Block) -> Result<Block, TooMany> {
         let (corners, stride) = (linear.cell.corner_count(), linear.cell.node_count(self.order));
         let sides = self.sides(linear.cell);
-        let mut nodes = vec![NodeId::default(); linear.nodes.len() / corners * stride];
+        let mut nodes = bytemuck::zeroed_vec(linear.nodes.len() / corners * stride);
         let mut seats = Vec::new();
         for (elements, nodes) in linear.nodes.chunks(BATCH * corners).zip(nodes.chunks_mut(BATCH * stride)) {
             self.look_up(linear.cell, &sides, elements, &mut seats);
