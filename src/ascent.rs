@@ -208,8 +208,9 @@ impl<'a> Ascent<'a> {
     /// Carries the volume along and smooths, or goes on from the checkpoint.
     fn level(&mut self, ready: Ready, below: Option<&Below>, clock: &mut Clock) -> Result<Level, PipelineError> {
         let straight = &ready.elevated.mesh.points;
-        let problem = Problem::new(&ready.elevated.mesh, straight);
-        let work = self.job.work(&problem, straight, &ready.projected.displacement);
+        let (mesh, job) = (&ready.elevated.mesh, self.job);
+        let work = || job.work(mesh.element_count(3), straight, &ready.projected.displacement);
+        let (problem, work) = rayon::join(|| Problem::new(mesh, straight), work);
         let resumed = self.found.take().map(|found| found.read(&work)).transpose()?;
         clock.step(Step::Perturb);
         let mut places = if resumed.is_some() { straight.clone() } else { self.start(&ready, below) };

@@ -48,7 +48,7 @@ use crate::mesh::{Mesh, TooMany};
 use crate::project::Projected;
 use crate::proof::Proof;
 use crate::retreat::GivenUp;
-use crate::smooth::{self, Checkpoint, Problem, Smoothed, Watch};
+use crate::smooth::{self, Checkpoint, Smoothed, Watch};
 
 /// Elements that an error lists by number.
 const LISTED: usize = 10;
@@ -109,11 +109,11 @@ impl Job {
     }
 
     /// What a checkpoint of this job belongs to.
-    pub(crate) fn work(&self, problem: &Problem, straight: &[DVec3], displacement: &[DVec3]) -> Work {
+    pub(crate) fn work(&self, elements: usize, straight: &[DVec3], displacement: &[DVec3]) -> Work {
         let smooth::Settings { threshold, alpha, max_sweeps: _, survey_factor, engine } = &self.smoothing;
         let held = (self.freeze_linear, self.freeze_walls, self.curve_layers, self.direct);
         let settings = format!("{:?}", (threshold, alpha, survey_factor, engine, held));
-        Work::new(problem.element_count(), straight, displacement, &settings)
+        Work::new(elements, straight, displacement, &settings)
     }
 }
 
