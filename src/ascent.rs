@@ -24,6 +24,7 @@ use crate::associate::{Association, Boundary, Host};
 use crate::checkpoint::{CheckpointError, Found};
 use crate::element::{Cell, Order, basis};
 use crate::elevate::{Elevated, elevate};
+use crate::fit::fit;
 use crate::layers::leave_straight_beyond;
 use crate::mesh::{Mesh, NodeId};
 use crate::periodic::Ties;
@@ -199,6 +200,7 @@ impl<'a> Ascent<'a> {
         clock.step(Step::Project);
         let mut projected = project(&elevated, self.boundary, self.association, job.freeze_linear);
         ties.carry(&elevated.mesh.points, &mut projected.displacement);
+        fit(&elevated, self.boundary, self.association, &ties, &mut projected);
         if let Some(layers) = job.curve_layers {
             leave_straight_beyond(layers, &elevated, self.boundary, self.association, &ties, &mut projected);
         }

@@ -269,7 +269,8 @@ fn inverted(lengths: &[f64], shares: &[f64], length: f64) -> Option<f64> {
     Some(share)
 }
 
-fn group_of(association: &Association, host: Host) -> Option<&Group> {
+/// The CAD that holds a host's nodes.
+pub(crate) fn group_of(association: &Association, host: Host) -> Option<&Group> {
     match host {
         Host::Surface(surface) => Some(&association.surfaces[surface].group),
         Host::Curve(curve) => Some(&association.curves[curve].group),

@@ -1,0 +1,438 @@
+//! Lets nodes of wall edges slide along the CAD, so that the wall polynomial comes nearer to it.
+//!
+//! A polynomial through nodes on the CAD is off it between them. Where an edge spans a change of slope or curvature, it bulges: an
+//! edge of P2 is off by about `h^3 k' / 125`, `h` its length and `k'` the change of curvature along it. Sliding the node by `b h`
+//! bends the polynomial by `b h^2 k` times a cubic of the same shape, so that a small slide takes the cubic away wherever there is
+//! curvature. Every edge on its own makes it worse (see [`crate::project`]): the faces between the edges bulge, and thin
+//! faces fold. So all edges around the farthest faces are fitted together:
+//!
+//! 1. Measure the distance of every curved wall face from its surface, and of every edge on a curve from that. Each surface and curve
+//!    has a *level*, the largest of its distances.
+//! 2. Take the farthest faces and edges. Their edges' nodes may slide: those on a curve along it, those on a surface in it. Inner nodes
+//!    of faces follow, as after projection.
+//! 3. Minimise, over all faces and edges that have one of these nodes, 8th powers of the distances over their levels, and the strain of
+//!    the sliding itself ([`model`]). Distances are linear there; no CAD is asked.
+//! 4. Cut slides that strain a face more than [`STRAIN`], put the nodes on the CAD, and measure. Around a face that is now farther than
+//!    before and near its level, slides are halved, until there is none.
+//! 5. Keep this if a level has fallen by a worthwhile share, and begin again; else take it back.
+//!
+//! So no level ever rises, of no surface and no curve.
+
+mod model;
+mod table;
+
+use std::collections::BTreeMap;
+
+use cad::{Evaluation, Foot, Group};
+use glam::DVec3;
+use rayon::prelude::*;
+use rustc_hash::FxHashMap;
+
+use crate::associate::{Association, Boundary, Host, normal_at};
+use crate::element::{Cell, edge_nodes};
+use crate::elevate::Elevated;
+use crate::mesh::NodeId;
+use crate::periodic::Ties;
+use crate::project::{Projected, group_of};
+use model::{Model, Response, Slider, gradients, relax};
+use table::Table;
+
+/// Faces that are measured at a time: what they take while they wait does not grow with the mesh.
+const BATCH: usize = 1 << 12;
+/// Rounds at most.
+const ROUNDS: usize = 4;
+/// Faces and edges farther than this share of their level are fitted ...
+const FAR: f64 = 0.5;
+/// ... the farthest first, this share of all of them ...
+const FEW: usize = 10;
+/// ... but as many as this where there are few, and no more than that where there are many.
+const CHOSEN: [usize; 2] = [64, 4096];
+/// Distances below this share of an edge are not worth a slide.
+const NEGLIGIBLE: f64 = 1e-4;
+/// Levels of curves that an edge on one is compared with.
+///
+/// Compared with one, edges slide for their own sake, and wing_sharp at scale 0.4 fell from `C_JAC` 0.80 to 0.76; not compared at all,
+/// they slide off their curves and all slides around them are taken back.
+const ON_CURVE: f64 = 3.0;
+/// Sweeps of the model's solver. 200 gave the same to 1e-4.
+const SWEEPS: usize = 40;
+/// Largest strain of a face by sliding. A strain takes as much off `C_JAC`: with 0.4 the nozzle at scale 0.4 fell from 0.81 to 0.76.
+const STRAIN: f64 = 0.12;
+/// Parts in which a slide is cut down to the largest strain.
+const CUTS: u32 = 16;
+/// A face or edge may come out farther than it was, up to this share of the level of its surface or curve.
+const ROOM: f64 = 0.95;
+/// What a distance may exceed: less than this share of it is no change.
+const SAME: f64 = 1e-3;
+/// Times that slides are halved where faces come out too far.
+const TRIES: usize = 16;
+/// Shares of a slide that are not halved but given up.
+const LEAST: f64 = 0.2;
+/// A round is kept if it takes a level to this share of it.
+const GAIN: f64 = 0.98;
+/// Distances below this share of a face's edge have no direction.
+const NO_DIRECTION: f64 = 1e-9;
+
+/// Lets nodes of wall edges slide where that takes the wall nearer to the CAD; nodes of periodic pairs stay.
+pub(crate) fn fit(
+    elevated: &Elevated,
+    boundary: &Boundary,
+    association: &Association,
+    ties: &Ties,
+    projected: &mut Projected,
+) {
+    let tables = [Cell::Line, Cell::Triangle, Cell::Quad].map(|cell| (cell, Table::new(cell, elevated.mesh.order)));
+    let start = projected.displacement.clone();
+    let mut fit = Fit { elevated, boundary, association, ties, projected, start, tables: tables.into_iter().collect() };
+    let mut pieces = fit.pieces();
+    for _ in 0..ROUNDS {
+        if !fit.round(&mut pieces) {
+            break;
+        }
+    }
+}
+
+struct Fit<'a> {
+    elevated: &'a Elevated,
+    boundary: &'a Boundary,
+    association: &'a Association,
+    ties: &'a Ties,
+    projected: &'a mut Projected,
+    /// Displacements as projected.
+    start: Vec<DVec3>,
+    tables: FxHashMap<Cell, Table>,
+}
+
+/// What is measured: a mesh face on a surface, or a mesh edge on a curve.
+#[derive(Clone, Copy)]
+enum Part {
+    /// By index in [`Boundary::faces`].
+    Face(usize),
+    /// By index in [`Boundary::edges`].
+    Edge(usize),
+}
+
+/// A part of the wall, and its distance from the CAD.
+#[derive(Clone, Copy)]
+struct Piece {
+    part: Part,
+    far: f64,
+}
+
+/// Surface or curve, by index.
+type Place = (bool, usize);
+
+/// Largest distance by surface and curve.
+type Levels = BTreeMap<Place, f64>;
+
+impl<'a> Fit<'a> {
+    fn cell(&self, part: Part) -> Cell {
+        match part {
+            Part::Face(face) => self.boundary.faces[face].cell,
+            Part::Edge(_) => Cell::Line,
+        }
+    }
+
+    fn host(&self, part: Part) -> Host {
+        match part {
+            Part::Face(face) => self.association.faces[face],
+            Part::Edge(edge) => self.association.edges[edge],
+        }
+    }
+
+    /// All nodes, those of the rim first.
+    fn nodes(&self, part: Part) -> Vec<NodeId> {
+        let order = self.elevated.mesh.order;
+        let of_face = |face: usize| {
+            let own = &self.boundary.faces[face];
+            let block = &self.elevated.mesh.blocks[own.block];
+            &block.nodes[own.element * block.stride(order)..][..block.stride(order)]
+        };
+        match part {
+            Part::Face(face) => of_face(face).to_vec(),
+            Part::Edge(edge) => {
+                let ends = self.boundary.edges[edge];
+                let Some(&face) = self.boundary.edge_faces[edge].first() else { return ends.to_vec() };
+                let nodes = of_face(face);
+                let own = |slots: &&Vec<usize>| ends.iter().all(|end| slots[..2].iter().any(|&s| nodes[s] == *end));
+                let slots = edge_nodes(self.boundary.faces[face].cell, order).iter().find(own);
+                slots.map_or(ends.to_vec(), |slots| slots.iter().map(|&s| nodes[s]).collect())
+            }
+        }
+    }
+
+    fn rim(&self, part: Part) -> Vec<NodeId> {
+        let mut nodes = self.nodes(part);
+        nodes.truncate(self.tables[&self.cell(part)].rim);
+        nodes
+    }
+
+    fn straight(&self, node: NodeId) -> DVec3 {
+        self.elevated.mesh.points[node.index()]
+    }
+
+    fn place(&self, node: NodeId) -> DVec3 {
+        self.straight(node) + self.projected.displacement[node.index()]
+    }
+
+    /// The group that holds a host's nodes; planes need none.
+    fn group(&self, host: Host) -> Option<&'a Group> {
+        group_of(self.association, host).filter(|_| self.association.plane_of(host).is_none())
+    }
+
+    fn slides(&self, node: NodeId) -> bool {
+        let new = node.index() >= self.elevated.linear_nodes;
+        new && self.group(self.projected.host(node.index())).is_some() && !self.ties.holds(node)
+    }
+
+    /// Length of a part's first edge.
+    fn size(&self, part: Part) -> f64 {
+        let [a, b] = match part {
+            Part::Face(face) => [self.boundary.corners[face][0], self.boundary.corners[face][1]],
+            Part::Edge(edge) => self.boundary.edges[edge],
+        };
+        self.straight(a).distance(self.straight(b))
+    }
+
+    /// Points of the wall, and their feet.
+    fn feet(&self, part: Part, values: &[Vec<f64>]) -> Vec<(DVec3, Foot)> {
+        let Some(group) = self.group(self.host(part)) else { return Vec::new() };
+        let places: Vec<DVec3> = self.nodes(part).into_iter().map(|n| self.place(n)).collect();
+        let point = |values: &Vec<f64>| places.iter().zip(values).map(|(x, v)| *x * *v).sum();
+        values.iter().map(point).map(|x| (x, group.closest(x, None))).collect()
+    }
+
+    fn far(&self, part: Part, values: &[Vec<f64>]) -> f64 {
+        self.feet(part, values).iter().map(|(_, foot)| foot.distance).fold(0.0, f64::max)
+    }
+
+    /// The faces and edges that have nodes to slide, roughly measured.
+    fn pieces(&self) -> Vec<Piece> {
+        let faces = (0..self.boundary.faces.len()).map(Part::Face);
+        let on_curve = |&edge: &usize| matches!(self.association.edges[edge], Host::Curve(_));
+        let parts: Vec<Part> = faces.chain((0..self.boundary.edges.len()).filter(on_curve).map(Part::Edge)).collect();
+        let measured = |&part: &Part| {
+            let slides = self.group(self.host(part)).is_some() && self.rim(part).into_iter().any(|n| self.slides(n));
+            slides.then(|| Piece { part, far: self.far(part, &self.tables[&self.cell(part)].coarse) })
+        };
+        let batch = |parts: &[Part]| parts.par_iter().filter_map(measured).collect::<Vec<_>>();
+        parts.chunks(BATCH).flat_map(batch).collect()
+    }
+
+    fn levels(&self, pieces: &[Piece]) -> Levels {
+        let mut levels = Levels::new();
+        for piece in pieces {
+            let own = levels.entry(self.key(piece.part)).or_insert(0.0);
+            *own = piece.far.max(*own);
+        }
+        levels
+    }
+
+    fn key(&self, part: Part) -> Place {
+        match self.host(part) {
+            Host::Curve(curve) => (true, curve),
+            Host::Surface(surface) => (false, surface),
+            _ => (false, usize::MAX),
+        }
+    }
+
+    /// One fit of the farthest faces; false where it was not worth it.
+    fn round(&mut self, pieces: &mut [Piece]) -> bool {
+        let sliding = self.sliding(pieces);
+        let number: FxHashMap<NodeId, usize> = sliding.iter().enumerate().map(|(s, &n)| (n, s)).collect();
+        let mut sliders: Vec<Slider> = sliding.par_iter().map(|&n| self.slider(n)).collect();
+        let near = |&p: &usize| self.rim(pieces[p].part).iter().any(|n| number.contains_key(n));
+        let near: Vec<usize> = (0..pieces.len()).into_par_iter().filter(near).collect();
+        let model = |&p: &usize| self.model(p, pieces[p].part, &sliders, &number);
+        let mut models: Vec<Model> = near.par_iter().map(model).collect();
+        for own in &models {
+            pieces[own.piece].far = own.distances.iter().copied().fold(0.0, f64::max);
+        }
+        let levels = self.levels(pieces);
+        for (m, own) in models.iter_mut().enumerate() {
+            let part = pieces[own.piece].part;
+            let least = NEGLIGIBLE * self.size(part);
+            let level = levels[&self.key(part)].max(least);
+            own.level = if matches!(part, Part::Face(_)) { level } else { ON_CURVE * level };
+            own.room = pieces[own.piece].far.max(ROOM * level);
+            own.sliders.iter().enumerate().for_each(|(r, response)| sliders[response.slider].at.push((m, r)));
+        }
+        relax(&mut sliders, &mut models, SWEEPS);
+        let allowed: Vec<f64> = models.par_iter().map(|own| self.allowed(own, pieces[own.piece].part)).collect();
+        let share = |slider: &Slider| slider.at.iter().map(|&(m, _)| allowed[m]).fold(1.0, f64::min);
+        let shares = sliders.iter().map(share).collect();
+        let kept = self.projected.displacement.clone();
+        let Some(far) = self.attempt(pieces, &sliders, &models, shares) else {
+            self.projected.displacement = kept;
+            return false;
+        };
+        let mut after = pieces.to_vec();
+        models.iter().zip(far).for_each(|(own, far)| after[own.piece].far = far);
+        let fallen = self.levels(&after);
+        let worth = levels.iter().any(|(key, level)| fallen[key] < GAIN * level);
+        if worth {
+            pieces.copy_from_slice(&after);
+        } else {
+            self.projected.displacement = kept;
+        }
+        worth
+    }
+
+    /// The nodes of the farthest pieces that may slide.
+    fn sliding(&self, pieces: &[Piece]) -> Vec<NodeId> {
+        let levels = self.levels(pieces);
+        let ratio = |piece: &Piece| piece.far / levels[&self.key(piece.part)];
+        let far = |piece: &&Piece| {
+            matches!(piece.part, Part::Face(_)) && ratio(piece) > FAR && piece.far > NEGLIGIBLE * self.size(piece.part)
+        };
+        let mut chosen: Vec<&Piece> = pieces.iter().filter(far).collect();
+        chosen.sort_by(|a, b| ratio(b).total_cmp(&ratio(a))); // stable: in file order where they are equal
+        let [least, most] = CHOSEN;
+        chosen.truncate((pieces.len() / FEW).clamp(least, most));
+        let rims = chosen.iter().flat_map(|piece| self.rim(piece.part));
+        let mut sliding: Vec<NodeId> = rims.filter(|&n| self.slides(n)).collect();
+        sliding.sort_unstable();
+        sliding.dedup();
+        sliding
+    }
+
+    fn slider(&self, node: NodeId) -> Slider {
+        let host = self.projected.host(node.index());
+        let evaluation = self.group(host).and_then(|group| {
+            let foot = group.closest(self.place(node), None);
+            group.evaluate(foot.entity, foot.parameters)
+        });
+        let along = match (host, evaluation) {
+            (Host::Surface(_), Some(Evaluation::Surface(point))) => point.normal.map_or(Vec::new(), |normal| {
+                let first = normal.any_orthonormal_vector();
+                vec![first, normal.cross(first)]
+            }),
+            (Host::Curve(_), Some(Evaluation::Curve(point))) => point.tangent.into_iter().collect(),
+            _ => Vec::new(),
+        };
+        Slider { node, along, step: DVec3::ZERO, at: Vec::new() }
+    }
+
+    fn model(&self, piece: usize, part: Part, sliders: &[Slider], number: &FxHashMap<NodeId, usize>) -> Model {
+        let table = &self.tables[&self.cell(part)];
+        let (nodes, rim, off) = (self.nodes(part), self.rim(part), NO_DIRECTION * self.size(part));
+        let group = self.group(self.host(part));
+        let normal = |x: DVec3| group.and_then(|group| normal_at(group, x));
+        let feet = self.feet(part, &table.fine);
+        let away = |(x, foot): &(DVec3, Foot)| {
+            if foot.distance > off { (*x - foot.point) / foot.distance } else { normal(*x).unwrap_or(DVec3::ZERO) }
+        };
+        let normals: Vec<DVec3> = feet.iter().map(away).collect();
+        let inner: Vec<DVec3> =
+            nodes[rim.len()..].iter().map(|&n| normal(self.place(n)).unwrap_or(DVec3::ZERO)).collect();
+        let slopes = |r: usize, along: DVec3| -> Vec<f64> {
+            let moved = |values: &Vec<f64>| -> DVec3 {
+                let led = inner.iter().enumerate().map(|(i, normal)| {
+                    let slid = along - *normal * normal.dot(along);
+                    slid * (values[rim.len() + i] * table.extension[i * rim.len() + r])
+                });
+                along * values[r] + led.sum::<DVec3>()
+            };
+            normals.iter().zip(&table.fine).map(|(n, values)| n.dot(moved(values))).collect()
+        };
+        let responses = rim.iter().enumerate().filter_map(|(r, node)| {
+            let &slider = number.get(node)?;
+            let slopes = sliders[slider].along.iter().map(|&t| slopes(r, t)).collect();
+            Some(Response { slider, rim: r, slopes })
+        });
+        let sliders = responses.collect();
+        let corners: Vec<DVec3> = nodes[..table.straight[0].len()].iter().map(|&n| self.straight(n)).collect();
+        let slopes = table.slopes.iter().zip(&table.straight);
+        let slopes: Vec<Vec<DVec3>> = slopes.map(|(slopes, straight)| gradients(slopes, straight, &corners)).collect();
+        let mean = |r: usize, q: usize| slopes.iter().map(|s| s[r].dot(s[q])).sum::<f64>() / slopes.len() as f64;
+        let products = (0..rim.len()).map(|r| (0..rim.len()).map(|q| mean(r, q)).collect()).collect();
+        let distances = feet.iter().map(|(_, foot)| foot.distance).collect();
+        Model { piece, level: 0.0, room: 0.0, distances, sliders, slopes, products, shifts: self.shifts(part) }
+    }
+
+    /// How far the nodes of a part's rim have slid.
+    fn shifts(&self, part: Part) -> Vec<DVec3> {
+        let slid = |n: NodeId| self.projected.displacement[n.index()] - self.start[n.index()];
+        self.rim(part).into_iter().map(slid).collect()
+    }
+
+    /// Share of the last steps up to which the strain stays within its limit.
+    fn allowed(&self, own: &Model, part: Part) -> f64 {
+        let before = self.shifts(part);
+        let mut shares = (0..=CUTS).rev().map(|k| f64::from(k) / f64::from(CUTS));
+        shares.find(|&share| own.strain(&before, share) <= STRAIN).unwrap_or(0.0)
+    }
+
+    /// Slides, with less and less around the pieces that come out too far; their distances in the end, `None` where some still do.
+    fn attempt(
+        &mut self,
+        pieces: &[Piece],
+        sliders: &[Slider],
+        models: &[Model],
+        mut shares: Vec<f64>,
+    ) -> Option<Vec<f64>> {
+        let before: Vec<DVec3> = sliders.iter().map(|slider| self.place(slider.node)).collect();
+        let mut far: Vec<f64> = vec![0.0; models.len()];
+        let mut moved = vec![true; sliders.len()];
+        for _ in 0..TRIES {
+            let stale = |own: &Model| own.sliders.iter().any(|response| moved[response.slider]);
+            let stale: Vec<usize> = (0..models.len()).filter(|&m| stale(&models[m])).collect();
+            self.slide(sliders, &before, &shares, &moved);
+            self.lead(&stale.iter().map(|&m| pieces[models[m].piece].part).collect::<Vec<_>>());
+            let measured = |&m: &usize| {
+                let part = pieces[models[m].piece].part;
+                self.far(part, &self.tables[&self.cell(part)].fine)
+            };
+            let measured: Vec<f64> = stale.par_iter().map(measured).collect();
+            stale.iter().zip(measured).for_each(|(&m, own)| far[m] = own);
+            moved.fill(false);
+            let mut fits = true;
+            for (own, &far) in models.iter().zip(&far) {
+                if far > (1.0 + SAME) * own.room {
+                    fits = false;
+                    own.sliders.iter().for_each(|response| moved[response.slider] = true);
+                }
+            }
+            if fits {
+                return Some(far);
+            }
+            for (share, _) in shares.iter_mut().zip(&moved).filter(|(_, moved)| **moved) {
+                *share = if *share < LEAST { 0.0 } else { 0.5 * *share };
+            }
+        }
+        None
+    }
+
+    /// Puts nodes that move at a share of their steps from `before`, on the CAD.
+    fn slide(&mut self, sliders: &[Slider], before: &[DVec3], shares: &[f64], moved: &[bool]) {
+        let foot = |s: usize| {
+            let group = self.group(self.projected.host(sliders[s].node.index())).filter(|_| shares[s] > 0.0);
+            group.map_or(before[s], |group| group.closest(before[s] + sliders[s].step * shares[s], None).point)
+        };
+        let moved: Vec<usize> = (0..sliders.len()).filter(|&s| moved[s]).collect();
+        let feet: Vec<DVec3> = moved.par_iter().map(|&s| foot(s)).collect();
+        for (s, foot) in moved.into_iter().zip(feet) {
+            let node = sliders[s].node;
+            self.projected.displacement[node.index()] = foot - self.straight(node);
+        }
+    }
+
+    /// Puts the nodes inside faces where their rims take them, on the CAD.
+    fn lead(&mut self, parts: &[Part]) {
+        let inner = |&part: &Part| -> Vec<(NodeId, DVec3)> {
+            let (nodes, rim, table) = (self.nodes(part), self.rim(part), &self.tables[&self.cell(part)]);
+            let Some(group) = self.group(self.host(part)) else { return Vec::new() };
+            let inner = nodes[rim.len()..].iter().zip(table.extension.chunks_exact(rim.len()));
+            let foot = |(&node, weights): (&NodeId, &[f64])| {
+                let moved = |(n, &w): (&NodeId, &f64)| self.projected.displacement[n.index()] * w;
+                let wish = self.straight(node) + rim.iter().zip(weights).map(moved).sum::<DVec3>();
+                (node, group.closest(wish, None).point - self.straight(node))
+            };
+            inner.map(foot).collect()
+        };
+        let feet: Vec<Vec<(NodeId, DVec3)>> = parts.par_iter().map(inner).collect();
+        for (node, displacement) in feet.into_iter().flatten() {
+            self.projected.displacement[node.index()] = displacement;
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! Distances of wall faces and edges from the CAD as linear functions of where their nodes slide, and what is minimised.
+//!
+//! A node that slides by `w` along the tangents of its curve or surface takes a point of the wall along by `phi w`, `phi` its Lagrange
+//! function. With `n` the direction from the point's foot to the point, the distance changes by `phi n . w`: to first order the CAD is
+//! its tangent plane at the foot. As `n` turns along an edge, a slide changes the distance even though the node stays on the CAD.
+
+use glam::DVec3;
+
+use crate::mesh::NodeId;
+
+/// Half the power of the distances, less 1: the sum of 8th powers is near to the maximum, and smooth.
+const POWER: i32 = 6;
+/// Weight of the strain: squared strain that weighs as much as the farthest points of a whole face.
+const STIFFNESS: f64 = 3.0;
+
+/// A node that may slide along its curve or surface.
+pub(super) struct Slider {
+    pub(super) node: NodeId,
+    /// Unit tangents: one on a curve, two on a surface, none where there are none.
+    pub(super) along: Vec<DVec3>,
+    /// Where the model takes it.
+    pub(super) step: DVec3,
+    /// Pieces around it, and its place in each one's list of sliders.
+    pub(super) at: Vec<(usize, usize)>,
+}
+
+/// A wall face or edge around sliding nodes.
+pub(super) struct Model {
+    /// Its number among the pieces of the wall.
+    pub(super) piece: usize,
+    /// What distances are compared with.
+    pub(super) level: f64,
+    /// The largest distance that it may come out with.
+    pub(super) room: f64,
+    /// Distances at its samples.
+    pub(super) distances: Vec<f64>,
+    /// Its sliding nodes.
+    pub(super) sliders: Vec<Response>,
+    /// Gradients of the rim's functions: `[point][rim node]`.
+    pub(super) slopes: Vec<Vec<DVec3>>,
+    /// Means over the points of the products of two gradients: `[rim node][rim node]`.
+    pub(super) products: Vec<Vec<f64>>,
+    /// How far each of the rim's nodes has slid since it was projected.
+    pub(super) shifts: Vec<DVec3>,
+}
+
+/// What a sliding node does to a piece.
+pub(super) struct Response {
+    /// Its number in [`Fit::sliders`](super::Fit).
+    pub(super) slider: usize,
+    /// Its place in the rim.
+    pub(super) rim: usize,
+    /// Change of each distance by a unit step along each tangent.
+    pub(super) slopes: Vec<Vec<f64>>,
+}
+
+/// Lets the nodes slide one after the other, `sweeps` times, to the minimum over all pieces of
+///
+/// ```text
+/// sum  mean (d / level)^8  +  STIFFNESS mean |grad u|^2
+/// ```
+///
+/// `d` the distances of a piece's samples and `u` what its rim has slid. The second term keeps neighbours together: thin faces, whose
+/// long edges lie side by side, would fold.
+pub(super) fn relax(sliders: &mut [Slider], models: &mut [Model], sweeps: usize) {
+    for _ in 0..sweeps {
+        for slider in &mut *sliders {
+            let step = newton(slider, models);
+            let moved: DVec3 = slider.along.iter().zip(step).map(|(t, s)| *t * s).sum();
+            slider.step += moved;
+            for &(m, r) in &slider.at {
+                let Model { distances, sliders, shifts, .. } = &mut models[m];
+                shifts[sliders[r].rim] += moved;
+                for (slopes, s) in sliders[r].slopes.iter().zip(step) {
+                    distances.iter_mut().zip(slopes).for_each(|(d, slope)| *d += slope * s);
+                }
+            }
+        }
+    }
+}
+
+/// Newton's step of one node, along its tangents.
+fn newton(slider: &Slider, models: &[Model]) -> [f64; 2] {
+    let ways = slider.along.len();
+    let (mut g, mut h) = ([0.0; 2], [[0.0; 2]; 2]);
+    for &(m, r) in &slider.at {
+        let own = &models[m];
+        let Response { rim, ref slopes, .. } = own.sliders[r];
+        let power = f64::from(POWER + 2);
+        let share = power / own.distances.len().max(1) as f64;
+        for (s, d) in own.distances.iter().enumerate() {
+            let q = d / own.level;
+            let weight = share * q.powi(POWER);
+            for a in 0..ways {
+                let slope = slopes[a][s] / own.level;
+                g[a] += weight * q * slope;
+                for b in 0..ways {
+                    h[a][b] += (power - 1.0) * weight * slope * slopes[b][s] / own.level;
+                }
+            }
+        }
+        let pull: DVec3 = own.shifts.iter().zip(&own.products[rim]).map(|(u, k)| *u * *k).sum();
+        for a in 0..ways {
+            g[a] += 2.0 * STIFFNESS * pull.dot(slider.along[a]);
+            h[a][a] += 2.0 * STIFFNESS * own.products[rim][rim];
+        }
+    }
+    let determinant = h[0][0] * h[1][1] - h[0][1] * h[1][0];
+    match ways {
+        1 if h[0][0] > 0.0 => [-g[0] / h[0][0], 0.0],
+        2 if determinant > 0.0 => {
+            [(g[1] * h[0][1] - g[0] * h[1][1]) / determinant, (g[0] * h[1][0] - g[1] * h[0][0]) / determinant]
+        }
+        _ => [0.0; 2],
+    }
+}
+
+impl Model {
+    /// Largest strain `|grad u|` where the rim has slid from `before` by a share of its way.
+    pub(super) fn strain(&self, before: &[DVec3], share: f64) -> f64 {
+        let shifts: Vec<DVec3> = before.iter().zip(&self.shifts).map(|(a, b)| a.lerp(*b, share)).collect();
+        let at = |slopes: &Vec<DVec3>| -> f64 {
+            let row = |axis: usize| -> DVec3 { shifts.iter().zip(slopes).map(|(u, s)| *s * u[axis]).sum() };
+            (0..3).map(|axis| row(axis).length_squared()).sum::<f64>().sqrt()
+        };
+        self.slopes.iter().map(at).fold(0.0, f64::max)
+    }
+}
+
+/// Gradients in space of functions with the given slopes; zero on edges, and where the corners lie in a line.
+///
+/// `straight` are the slopes of the corners' linear functions.
+pub(super) fn gradients(slopes: &[[f64; 2]], straight: &[[f64; 2]], corners: &[DVec3]) -> Vec<DVec3> {
+    let axis = |a: usize| -> DVec3 { corners.iter().zip(straight).map(|(x, s)| *x * s[a]).sum() };
+    let (a, b) = (axis(0), axis(1));
+    let (aa, ab, bb) = (a.dot(a), a.dot(b), b.dot(b));
+    let area = aa * bb - ab * ab;
+    if area <= 0.0 {
+        return vec![DVec3::ZERO; slopes.len()];
+    }
+    let (u, v) = ((a * bb - b * ab) / area, (b * aa - a * ab) / area);
+    slopes.iter().map(|s| u * s[0] + v * s[1]).collect()
+}
