@@ -50,7 +50,7 @@ pub mod checkpoint;
 pub mod cli;
 pub mod element;
 pub mod elevate;
-mod fit;
+pub mod fit;
 pub mod formats;
 mod ladder;
 pub mod layers;

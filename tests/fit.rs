@@ -1,0 +1,121 @@
+//! The fit of the wall: nodes of wall edges slide along the CAD, and the wall comes nearer to it.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[macro_use]
+mod common;
+
+use std::collections::BTreeMap;
+
+use cad::{Group, Model, ReadOptions};
+use common::fixture;
+use glam::DVec3;
+use sagitta::associate::{Association, Boundary, Host, tie};
+use sagitta::element::{Order, Samples, basis};
+use sagitta::elevate::{Elevated, elevate};
+use sagitta::fit::fit;
+use sagitta::formats;
+use sagitta::periodic::Ties;
+use sagitta::project::{Projected, project};
+
+/// Points an edge, times the order, at which walls are measured; the fit itself takes 3.
+const DENSITY: usize = 7;
+
+/// Largest distance of each curved surface's faces from it.
+fn levels(
+    elevated: &Elevated,
+    boundary: &Boundary,
+    association: &Association,
+    projected: &Projected,
+) -> BTreeMap<usize, f64> {
+    let order = elevated.mesh.order;
+    let mut levels = BTreeMap::new();
+    for (face, host) in boundary.faces.iter().zip(&association.faces) {
+        let Host::Surface(surface) = *host else { continue };
+        if association.plane_of(*host).is_some() {
+            continue; // its inner edges are carried by the perturbation
+        }
+        let block = &elevated.mesh.blocks[face.block];
+        let stride = block.stride(order);
+        let nodes = &block.nodes[face.element * stride..][..stride];
+        let samples = Samples::survey(face.cell, Order::LINEAR, DENSITY * order.get());
+        for &at in &samples.points()[..samples.count()] {
+            let place = |n: usize| elevated.mesh.points[n] + projected.displacement[n];
+            let values = basis::values(face.cell, order, at);
+            let x: DVec3 = nodes.iter().zip(values).map(|(n, v)| place(n.index()) * v).sum();
+            let level = levels.entry(surface).or_insert(0.0_f64);
+            *level = level.max(association.surfaces[surface].group.closest(x, None).distance);
+        }
+    }
+    levels
+}
+
+fn group(association: &Association, host: Host) -> &Group {
+    match host {
+        Host::Surface(surface) => &association.surfaces[surface].group,
+        Host::Curve(curve) => &association.curves[curve].group,
+        _ => panic!("{host:?} holds no node that slides"),
+    }
+}
+
+/// What the fit does to a fixture's wall.
+struct Outcome {
+    before: BTreeMap<usize, f64>,
+    after: BTreeMap<usize, f64>,
+    /// The longest slide, as a share of its edge.
+    slid: f64,
+}
+
+impl Outcome {
+    fn of(case: &str, order: usize) -> Outcome {
+        let linear = formats::read(&fixture(case, "msh")).unwrap();
+        let boundary = Boundary::new(&linear);
+        let reading = ReadOptions { reader: env!("CARGO_BIN_EXE_sagitta").into(), ..ReadOptions::default() };
+        let model = Model::read(&fixture(case, "step"), &reading).unwrap();
+        let association = tie(None, &linear, &boundary, &model, 1e-3, &|_| {}).unwrap().association;
+        let mut elevated = elevate(&linear, Order::new(order).unwrap()).unwrap();
+        let (ties, _) = Ties::new(&mut elevated, &boundary, false);
+        let mut projected = project(&elevated, &boundary, &association, false);
+        let start = projected.displacement.clone();
+        let before = levels(&elevated, &boundary, &association, &projected);
+        fit(&elevated, &boundary, &association, &ties, &mut projected);
+        let after = levels(&elevated, &boundary, &association, &projected);
+        let mut slid = 0.0_f64;
+        for (n, displacement) in projected.displacement.iter().enumerate().filter(|(n, d)| **d != start[*n]) {
+            let size = projected.sizes[&n];
+            let off = group(&association, projected.host(n)).closest(elevated.mesh.points[n] + *displacement, None);
+            assert!(off.distance < 1e-7 * size, "{case} P{order}: node {n} is {:e} off the CAD", off.distance);
+            assert!(n >= elevated.linear_nodes, "{case} P{order}: linear node {n} has slid");
+            slid = slid.max(displacement.distance(start[n]) / size);
+        }
+        Outcome { before, after, slid }
+    }
+}
+
+fn largest(levels: &BTreeMap<usize, f64>) -> f64 {
+    levels.values().copied().fold(0.0, f64::max)
+}
+
+/// The weeble's walls change their curvature along the edges, the torus's across them; the last number is what is left at most.
+#[test]
+fn the_wall_comes_nearer_and_no_surface_farther() {
+    for (case, order, share) in
+        [("weeble", 2, 0.8), ("weeble", 3, 0.6), ("torus", 2, 0.85), ("torus", 3, 0.6), ("sphere_shell", 2, 0.7)]
+    {
+        let Outcome { before, after, slid } = Outcome::of(case, order);
+        println!("{case} P{order}: {:.3e} to {:.3e}, slid {slid:.3}", largest(&before), largest(&after));
+        assert!(largest(&after) <= share * largest(&before), "{case} P{order}: {before:?} {after:?}");
+        for (surface, level) in &before {
+            // Between the fit's own points a distance is a little larger.
+            assert!(after[surface] <= 1.05 * level, "{case} P{order}, {surface}: {level:e} to {:e}", after[surface]);
+        }
+        assert!(slid > 0.0 && slid < 0.1, "{case} P{order}: slid by {slid}");
+    }
+}
+
+/// Where curvature does not change no slide helps: nothing moves.
+#[test]
+fn a_cylinder_stays_as_projected() {
+    let Outcome { before, after, slid } = Outcome::of("cylinder_bl", 2);
+    assert_eq!(slid, 0.0);
+    assert_eq!(before, after);
+}
