@@ -21,8 +21,10 @@ fn curve(order: &str, more: &[&str]) -> (f64, f64) {
     (number(&report, "/smoothing/end/c_jac"), number(dish, "/farthest"))
 }
 
+/// What the fit of the wall gained at P3 (a tenth of the distance, if the wall is frozen) a slide may cost, but not what P3 gains on P2.
 #[test]
 fn sliding_columns_gain_what_frozen_walls_cannot() {
+    let mut before = None;
     for order in ["2", "3"] {
         let (slid, slid_away) = curve(order, &[]);
         let (frozen, frozen_away) = curve(order, &["--freeze-walls"]);
@@ -30,7 +32,9 @@ fn sliding_columns_gain_what_frozen_walls_cannot() {
             "P{order}: C_JAC {frozen:.3} frozen, {slid:.3} slid; wall off the CAD {frozen_away:.2e}, {slid_away:.2e}"
         );
         assert!(slid >= frozen + 0.1, "P{order}: {frozen} frozen, {slid} slid");
-        assert!(slid_away <= 1.2 * frozen_away, "P{order}: the wall is {slid_away} off the CAD, {frozen_away} frozen");
+        let most = before.map_or(1.2 * frozen_away, |below| 0.1 * below);
+        assert!(slid_away <= most, "P{order}: the wall is {slid_away} off the CAD, {frozen_away} frozen");
+        before = Some(slid_away);
     }
 }
 
@@ -52,7 +56,7 @@ fn linear_nodes_slide_on_the_wall_unless_they_are_held() {
     const RADIUS: f64 = 4.0;
     let moved = |nodes: &[[DVec3; 2]]| nodes.iter().map(|[a, b]| a.distance(*b)).fold(0.0, f64::max);
     let slid = wall_nodes(&[]);
-    assert!(moved(&slid) > 1e-4, "the wall's linear nodes moved by {:e}", moved(&slid));
+    assert!(moved(&slid) > 1e-6 * RADIUS, "the wall's linear nodes moved by {:e}", moved(&slid));
     for [_, place] in &slid {
         let off = (place.distance(DVec3::Z * RADIUS) - RADIUS).abs();
         assert!(off < 1e-12 * RADIUS, "a linear node is {off:e} off the sphere, at {place}");

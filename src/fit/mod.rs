@@ -26,7 +26,7 @@ use std::collections::BTreeMap;
 use cad::{Evaluation, Foot, Group};
 use glam::DVec3;
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::associate::{Association, Boundary, Host, normal_at};
 use crate::element::{Cell, edge_nodes};
@@ -86,7 +86,8 @@ pub fn fit(
 ) {
     let tables = [Cell::Line, Cell::Triangle, Cell::Quad].map(|cell| (cell, Table::new(cell, elevated.mesh.order)));
     let start = projected.displacement.clone();
-    let mut fit = Fit { elevated, boundary, association, ties, projected, start, tables: tables.into_iter().collect() };
+    let tied = ties.images().iter().flat_map(|image| [image.node, image.of]).collect();
+    let mut fit = Fit { elevated, boundary, association, tied, projected, start, tables: tables.into_iter().collect() };
     let mut pieces = fit.pieces();
     for _ in 0..ROUNDS {
         if !fit.round(&mut pieces) {
@@ -99,7 +100,8 @@ struct Fit<'a> {
     elevated: &'a Elevated,
     boundary: &'a Boundary,
     association: &'a Association,
-    ties: &'a Ties,
+    /// Nodes of periodic pairs.
+    tied: FxHashSet<NodeId>,
     projected: &'a mut Projected,
     /// Displacements as projected.
     start: Vec<DVec3>,
@@ -145,12 +147,8 @@ impl<'a> Fit<'a> {
 
     /// All nodes, those of the rim first.
     fn nodes(&self, part: Part) -> Vec<NodeId> {
-        let order = self.elevated.mesh.order;
-        let of_face = |face: usize| {
-            let own = &self.boundary.faces[face];
-            let block = &self.elevated.mesh.blocks[own.block];
-            &block.nodes[own.element * block.stride(order)..][..block.stride(order)]
-        };
+        let mesh = &self.elevated.mesh;
+        let of_face = |face: usize| self.boundary.nodes(face, mesh);
         match part {
             Part::Face(face) => of_face(face).to_vec(),
             Part::Edge(edge) => {
@@ -158,7 +156,7 @@ impl<'a> Fit<'a> {
                 let Some(&face) = self.boundary.edge_faces[edge].first() else { return ends.to_vec() };
                 let nodes = of_face(face);
                 let own = |slots: &&Vec<usize>| ends.iter().all(|end| slots[..2].iter().any(|&s| nodes[s] == *end));
-                let slots = edge_nodes(self.boundary.faces[face].cell, order).iter().find(own);
+                let slots = edge_nodes(self.boundary.faces[face].cell, mesh.order).iter().find(own);
                 slots.map_or(ends.to_vec(), |slots| slots.iter().map(|&s| nodes[s]).collect())
             }
         }
@@ -185,7 +183,7 @@ impl<'a> Fit<'a> {
 
     fn slides(&self, node: NodeId) -> bool {
         let new = node.index() >= self.elevated.linear_nodes;
-        new && self.group(self.projected.host(node.index())).is_some() && !self.ties.holds(node)
+        new && self.group(self.projected.host(node.index())).is_some() && !self.tied.contains(&node)
     }
 
     /// Length of a part's first edge.
@@ -410,32 +408,39 @@ impl<'a> Fit<'a> {
     fn slide(&mut self, sliders: &[Slider], before: &[DVec3], shares: &[f64], moved: &[bool]) {
         let foot = |s: usize| {
             let group = self.group(self.projected.host(sliders[s].node.index())).filter(|_| shares[s] > 0.0);
-            group.map_or(before[s], |group| group.closest(before[s] + sliders[s].step * shares[s], None).point)
+            group.map(|group| group.closest(before[s] + sliders[s].step * shares[s], None))
         };
         let moved: Vec<usize> = (0..sliders.len()).filter(|&s| moved[s]).collect();
-        let feet: Vec<DVec3> = moved.par_iter().map(|&s| foot(s)).collect();
+        let feet: Vec<Option<Foot>> = moved.par_iter().map(|&s| foot(s)).collect();
         for (s, foot) in moved.into_iter().zip(feet) {
-            let node = sliders[s].node;
-            self.projected.displacement[node.index()] = foot - self.straight(node);
+            self.put(sliders[s].node, foot.as_ref(), before[s]);
         }
     }
 
     /// Puts the nodes inside faces where their rims take them, on the CAD.
     fn lead(&mut self, parts: &[Part]) {
-        let inner = |&part: &Part| -> Vec<(NodeId, DVec3)> {
+        let inner = |&part: &Part| -> Vec<(NodeId, Foot)> {
             let (nodes, rim, table) = (self.nodes(part), self.rim(part), &self.tables[&self.cell(part)]);
             let Some(group) = self.group(self.host(part)) else { return Vec::new() };
             let inner = nodes[rim.len()..].iter().zip(table.extension.chunks_exact(rim.len()));
             let foot = |(&node, weights): (&NodeId, &[f64])| {
                 let moved = |(n, &w): (&NodeId, &f64)| self.projected.displacement[n.index()] * w;
                 let wish = self.straight(node) + rim.iter().zip(weights).map(moved).sum::<DVec3>();
-                (node, group.closest(wish, None).point - self.straight(node))
+                (node, group.closest(wish, None))
             };
             inner.map(foot).collect()
         };
-        let feet: Vec<Vec<(NodeId, DVec3)>> = parts.par_iter().map(inner).collect();
-        for (node, displacement) in feet.into_iter().flatten() {
-            self.projected.displacement[node.index()] = displacement;
+        let feet: Vec<Vec<(NodeId, Foot)>> = parts.par_iter().map(inner).collect();
+        for (node, foot) in feet.into_iter().flatten() {
+            self.put(node, Some(&foot), foot.point);
         }
+    }
+
+    /// Puts a node at its foot, or else at `otherwise`.
+    fn put(&mut self, node: NodeId, foot: Option<&Foot>, otherwise: DVec3) {
+        self.projected.projections += foot.iter().len();
+        self.projected.unproven += foot.iter().filter(|foot| !foot.is_proven()).count();
+        let place = foot.map_or(otherwise, |foot| foot.point);
+        self.projected.displacement[node.index()] = place - self.straight(node);
     }
 }
