@@ -73,6 +73,8 @@ const TRIES: usize = 16;
 const LEAST: f64 = 0.2;
 /// A round is kept if it takes a level to this share of it.
 const GAIN: f64 = 0.98;
+/// A slide below this share of the node's edge is not made: in a CAD file whose curves end off their faces (IGES) it can only end worse.
+const UNMOVED: f64 = 1e-6;
 /// Distances below this share of a face's edge have no direction.
 const NO_DIRECTION: f64 = 1e-9;
 
@@ -260,7 +262,11 @@ impl<'a> Fit<'a> {
         }
         relax(&mut sliders, &mut models, SWEEPS);
         let allowed: Vec<f64> = models.par_iter().map(|own| self.allowed(own, pieces[own.piece].part)).collect();
-        let share = |slider: &Slider| slider.at.iter().map(|&(m, _)| allowed[m]).fold(1.0, f64::min);
+        let size = |slider: &Slider| self.projected.sizes.get(&slider.node.index()).copied().unwrap_or(0.0);
+        let share = |slider: &Slider| {
+            let moves = slider.step.length() > UNMOVED * size(slider);
+            if moves { slider.at.iter().map(|&(m, _)| allowed[m]).fold(1.0, f64::min) } else { 0.0 }
+        };
         let shares = sliders.iter().map(share).collect();
         let kept = self.projected.displacement.clone();
         let Some(far) = self.attempt(pieces, &sliders, &models, shares) else {
