@@ -15,6 +15,8 @@
 //!                                      ▼
 //!                                   project      new wall nodes → their CAD group
 //!                                      ▼
+//!                                     fit        nodes of wall edges slide, so that the wall polynomial comes nearer to the CAD
+//!                                      ▼
 //!                                   perturb      wall displacement carried into planes and volume
 //!                                      ▼
 //!                                   smooth       stages: shape, then shape + Jacobian; wall nodes slide on the CAD
@@ -30,7 +32,8 @@
 //! 2. [`associate`] ties boundary faces, edges and points to groups of CAD entities, by a linkage file, entity tags or geometry, and
 //!    holds the claims against the CAD.
 //! 3. [`elevate`] makes the new nodes at their straight places.
-//! 4. [`project`] spreads the boundary's new nodes and puts them on their groups.
+//! 4. [`project`] spreads the boundary's new nodes and puts them on their groups; [`fit`] slides them on it so that the wall between
+//!    them is nearer to the CAD.
 //! 5. [`perturb`] carries the wall's displacement into planar patches and into the volume.
 //! 6. [`smooth`] lowers an objective made of the paper's costs ([`quality`]), stage by stage, on the active part of the mesh.
 //! 7. [`certify`] proves every element valid and every face on the CAD free of folds ([`proof`]), or the ladder (`src/ladder.rs`)

@@ -255,7 +255,7 @@ impl<'a> Fit<'a> {
         for (m, own) in models.iter_mut().enumerate() {
             let part = pieces[own.piece].part;
             let least = NEGLIGIBLE * self.size(part);
-            let level = levels[&self.key(part)].max(least);
+            let level = levels[&self.key(part)].max(least).max(f64::MIN_POSITIVE);
             own.level = if matches!(part, Part::Face(_)) { level } else { ON_CURVE * level };
             own.room = pieces[own.piece].far.max(ROOM * level);
             own.sliders.iter().enumerate().for_each(|(r, response)| sliders[response.slider].at.push((m, r)));

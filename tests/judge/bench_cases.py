@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Curves every case in a folder, has the result judged by code that is not ours, and prints a table.
 
-usage: bench_cases.py SAGITTA CASES [--orders 2,3,4] [--only NAME,...] [--iges] [--peer] [--certify] [--out FOLDER]
+usage: bench_cases.py SAGITTA CASES [--orders 2,3,4] [--only NAME,...] [--iges] [--peer] [--methods NAME,...]
+                      [--certify] [--out FOLDER]
 
 CASES holds a folder a case, each with one NAME.msh, NAME.step (NAME.igs) and NAME.meshlink.xml, as make_cases.py of
 the project's plan writes them. `good` is the judge's verdict: topology kept, conforming, no invalid element at density
 4p, wall no farther from the CAD than 1.2 times Gmsh's interpolation, wall nodes on the CAD, exit code 0, nothing
 given up. The certificate is ours (exit code 0 says that it holds); --certify lets the judge prove it too, in Python.
---peer curves the same meshes with Gmsh's own methods (at most 300 s each).
+--peer curves the same meshes with Gmsh's own methods (at most 300 s each), or with those named.
 """
 import argparse
 import glob
@@ -106,6 +107,7 @@ def main():
     parser.add_argument("--only", default="")
     parser.add_argument("--iges", action="store_true")
     parser.add_argument("--peer", action="store_true")
+    parser.add_argument("--methods", default=",".join(PEER))
     parser.add_argument("--certify", action="store_true")
     parser.add_argument("--out", help="keep the curved meshes and reports here")
     options = parser.parse_args()
@@ -122,7 +124,7 @@ def main():
                 print(ours(options, case, stem, order, stem + ".step", folder), flush=True)
                 if options.iges and os.path.exists(stem + ".igs"):
                     print(ours(options, case, stem, order, stem + ".igs", folder), flush=True)
-                for method in PEER if options.peer else []:
+                for method in options.methods.split(",") if options.peer else []:
                     print(peer(case, stem, order, method, folder), flush=True)
 
 
