@@ -3,9 +3,9 @@
 //! # Memory
 //!
 //! What a mesh of tets takes at P2, in bytes a node of the curved mesh (0.127 linear nodes and 0.74 tets a node), when the report is
-//! made. `wing_sharp --scale 5 --quick` (5.85 million nodes, 4.33 million tets) takes 1.06 GB there, 180 bytes a node, linear mesh,
-//! CAD and program included, and peaks at 1.16 GB, 199 bytes a node (`/usr/bin/time`), while the file is written. All rows but the
-//! last are computed from the types; the last is what remains.
+//! made. `wing_sharp --scale 5 --quick` (5.85 million nodes, 4.33 million tets) takes 1.10 GB there, 187 bytes a node, linear mesh,
+//! CAD and program included; that is the peak of the whole run (`/usr/bin/time`). All rows but the last are computed from the
+//! types; the last is what remains.
 //!
 //! | array | bytes |
 //! |---|---|
@@ -18,7 +18,7 @@
 //! | proven minima: `f64` a tet | 6 |
 //! | elements around the corners, for turning angles: 4 x `u32` a tet | 12 |
 //! | boundary: hosts, displacements, association | 8 |
-//! | CAD, code, allocator | 16 |
+//! | CAD, code, allocator | 23 |
 //!
 //! At P3 and P4 the mesh of the order below is kept as well, as far as it takes to go on from it: places and nodes of the elements.
 //!
