@@ -3,7 +3,7 @@
 //! The polynomial of the order below is the same polynomial in the order above, so what is left of the walls' displacement is what
 //! the lower order could not follow: a small part, that [`perturb`] carries into the volume as it carries the whole of it at P2.
 //! Sweeps at low order are cheap (a tet of P2 has 10 nodes, one of P4 has 35), and few are left for the high one. Measured on 2
-//! cores, min C_WCN / C_JAC and seconds of the whole run:
+//! cores before [`crate::fit`] was there, min C_WCN / C_JAC and seconds of the whole run:
 //!
 //! | case | `--direct` | order by order |
 //! |---|---|---|
