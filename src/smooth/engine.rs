@@ -1,6 +1,7 @@
 //! What moves the nodes of a patch.
 
 use std::fmt;
+use std::ops::RangeInclusive;
 
 /// An engine of the smoother; stages, patches and surveys are the same for all.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -25,11 +26,17 @@ impl Engine {
         }
     }
 
-    /// Sweeps between two surveys.
-    pub(super) fn round(self) -> usize {
+    /// Sweeps between two surveys: of the first rounds, and at most.
+    ///
+    /// L-BFGS lowers the objective from the first sweep, but not the worst of its elements: on a large patch that falls at
+    /// first and recovers as the descent converges (weeble P3, `--threshold 0.95`, 117 000 active nodes: C_JAC 0.72, 0.52
+    /// after 10 sweeps, 0.80 after 100). Rounds of 10 alone forgot what they had learned each time and ended where they had
+    /// begun, at 0.72; with rounds that grow to 40 that mesh ends at 0.86, weeble P4 at 0.80 rather than 0.79 and in two
+    /// thirds of the time. Rounds of 160 give no more.
+    pub(super) fn rounds(self) -> RangeInclusive<usize> {
         match self {
-            Engine::QuasiNewton => 10,
-            Engine::Gradient => 20, // its sweeps are short and many
+            Engine::QuasiNewton => 10..=40,
+            Engine::Gradient => 20..=20, // it remembers nothing
         }
     }
 }

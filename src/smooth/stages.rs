@@ -83,7 +83,7 @@ pub fn smooth(
         start,
         best: Best::is_now(start),
         costs,
-        pace: Pace::new(if start.c_wcn <= 0.0 { Stage::Shape } else { Stage::Full }),
+        pace: Pace::new(if start.c_wcn <= 0.0 { Stage::Shape } else { Stage::Full }, settings.engine),
         sweeps: 0,
         stopped: false,
         looseness: 1.0,
@@ -116,11 +116,13 @@ pub(crate) struct Pace {
     pub(crate) low_rings: usize,
     /// Whether the worst elements are worked on alone.
     pub(crate) focused: bool,
+    /// Most sweeps of the next round.
+    pub(crate) round: usize,
 }
 
 impl Pace {
-    fn new(stage: Stage) -> Pace {
-        Pace { stage, idle: 0, low_rings: RINGS, focused: false }
+    fn new(stage: Stage, engine: Engine) -> Pace {
+        Pace { stage, idle: 0, low_rings: RINGS, focused: false, round: *engine.rounds().start() }
     }
 }
 
@@ -167,7 +169,7 @@ impl Run<'_, '_> {
             if self.pace.stage == Stage::Full {
                 break;
             }
-            self.pace = Pace::new(Stage::Full);
+            self.pace = Pace::new(Stage::Full, self.settings.engine);
             self.go_back(x);
         }
     }
@@ -273,15 +275,23 @@ impl Run<'_, '_> {
         (0..active.len()).filter(|&e| active[e]).collect()
     }
 
-    /// One round: a survey dense enough, a descent, and what it gained.
+    /// One round: a survey dense enough, a descent, and what it gained. Where that was next to nothing and the descent had
+    /// not come to its end, the next round is longer.
     fn round(&mut self, active: &[usize], x: &mut [DVec3]) {
-        let before = self.standing();
+        let (before, first) = (self.standing(), self.sweeps);
         self.densify(active, x);
         let patch = Patch::new(self.problem, active, &self.density, self.constraint.images());
         self.best.note(&patch, x, &self.costs);
         self.descend(&patch, x);
         self.survey(&patch.elements, x);
-        self.pace.idle = if self.standing() - before < PROGRESS { self.pace.idle + 1 } else { 0 };
+        let cut_off = self.sweeps - first == self.pace.round;
+        if self.standing() - before >= PROGRESS {
+            self.pace.idle = 0;
+        } else if cut_off && self.pace.round < *self.settings.engine.rounds().end() {
+            self.pace.round *= 2;
+        } else {
+            self.pace.idle += 1;
+        }
     }
 
     /// Offers the state between two rounds to be kept; after one that was cut short there is no going on.
@@ -315,9 +325,11 @@ impl Run<'_, '_> {
         let densest = (self.surveys.len() - 1) as u8;
         self.density = checkpoint.density.iter().map(|&density| density.min(densest)).collect();
         // Numbers beyond what a run reaches come from a forged file: they must not cost more than the work does.
-        let Pace { idle, low_rings, .. } = checkpoint.pace;
+        let Pace { idle, low_rings, round, .. } = checkpoint.pace;
         let (idle, low_rings) = (idle.min(PATIENCE), low_rings.clamp(RINGS, MOST_RINGS));
-        (self.pace, self.sweeps) = (Pace { idle, low_rings, ..checkpoint.pace }, checkpoint.sweeps);
+        let rounds = self.settings.engine.rounds();
+        let round = round.clamp(*rounds.start(), *rounds.end());
+        (self.pace, self.sweeps) = (Pace { idle, low_rings, round, ..checkpoint.pace }, checkpoint.sweeps);
     }
 
     /// Back to the best state so far.
@@ -395,7 +407,7 @@ impl Run<'_, '_> {
         let anchors = (0..patch.nodes.len()).filter_map(anchored).collect();
         let objective = Objective { patch, kernels, cuts, weights, anchors };
         let progress = self.progress(patch);
-        let left = self.settings.engine.round().min(self.settings.max_sweeps - self.sweeps);
+        let left = self.pace.round.min(self.settings.max_sweeps - self.sweeps);
         let first = self.sweeps;
         let (watch, stopped) = (&mut *self.watch, &mut self.stopped);
         let mut local: Vec<DVec3> = patch.nodes.iter().map(|n| x[n.index()]).collect();
