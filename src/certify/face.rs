@@ -3,7 +3,13 @@
 //! A face `x(u, v)` stands upright where its normal `x_u x x_v` has a positive product with the mean normal `m` of the
 //! linear face. That product is the determinant of `(x_u, x_v, m)`, a polynomial of degree `2 (p - 1)` on triangles and
 //! `2 p - 1` by axis on quadrilaterals, and is treated as the volume's Jacobians are: Bernstein coefficients with a bound
-//! of their rounding, halved until decided. A face that leans by more than 90 degrees against `m` counts as folded.
+//! of their rounding, halved until decided.
+//!
+//! `m` is not the only vector that will do: a face whose normals have a positive product with any one vector is a graph over the
+//! plane across it, without folds and without crossing itself. A coarse face on a strongly curved wall can lean by more than
+//! 90 degrees against its linear face at a corner (the torus at scale 0.5: its linear faces stand at 87 degrees to the
+//! wall's normal in some of their corners). Where `m` does not prove it, the middle of the curved face's own normals is tried, if
+//! that is on the side of `m`.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -15,7 +21,10 @@ use super::product::Product;
 use super::real::Double;
 use super::search::{Goal, Task};
 use super::{Settings, Verdict};
-use crate::element::{Cell, Order, basis};
+use crate::element::{Cell, Order, basis, lattice};
+
+/// Steps towards the middle of a face's normals.
+const TURNS: u32 = 30;
 
 /// A curved face of a wall.
 #[derive(Clone, Debug)]
@@ -99,10 +108,14 @@ impl Judge {
         let normal = mean_normal(&face.corners);
         let reach = face.points.iter().fold(DVec3::ZERO, |reach, &x| reach.max((x - face.points[0]).abs()));
         let Some(frame) = Frame::of(reach).filter(|_| normal != DVec3::ZERO) else { return Verdict::Undecided };
-        match self.fold_in::<f64>(face, normal, frame, settings) {
-            Verdict::Undecided => self.fold_in::<Double>(face, normal, frame, settings),
+        let mut against = |vector: DVec3| match self.fold_in::<f64>(face, vector, frame, settings) {
+            Verdict::Undecided => self.fold_in::<Double>(face, vector, frame, settings),
             decided => decided,
-        }
+        };
+        let first = against(normal);
+        let other = || middle(&normals(face)).filter(|own| own.dot(normal) > 0.0);
+        let stands = first == Verdict::Valid || other().is_some_and(|own| against(own) == Verdict::Valid);
+        if stands { Verdict::Valid } else { first }
     }
 
     fn fold_in<T: Arithmetic>(&mut self, face: &WallFace, normal: DVec3, frame: Frame, settings: &Settings) -> Verdict {
@@ -130,11 +143,31 @@ fn mean_normal(corners: &[DVec3]) -> DVec3 {
     fan.sum::<DVec3>().normalize_or_zero()
 }
 
+/// Unit normals of a curved face at its nodes, where it has them.
+fn normals(face: &WallFace) -> Vec<DVec3> {
+    let normal = |at: &[u8; 3]| {
+        let at = at.map(|x| f64::from(x) / face.order.get() as f64);
+        let slopes = basis::gradients(face.cell, face.order, at);
+        let along = |axis: usize| -> DVec3 { face.points.iter().zip(&slopes).map(|(x, s)| *x * s[axis]).sum() };
+        along(0).cross(along(1)).try_normalize()
+    };
+    lattice(face.cell, face.order).iter().filter_map(normal).collect()
+}
+
+/// The axis of the narrowest cone around unit vectors, nearly (Badoiu and Clarkson, doi:10.1145/780542.780546).
+fn middle(vectors: &[DVec3]) -> Option<DVec3> {
+    let mut axis = vectors.iter().sum::<DVec3>().try_normalize()?;
+    for step in 0..TURNS {
+        let farthest = vectors.iter().min_by(|a, b| a.dot(axis).total_cmp(&b.dot(axis)))?;
+        axis = axis.lerp(*farthest, 1.0 / f64::from(step + 2)).try_normalize()?;
+    }
+    Some(axis)
+}
+
 #[cfg(test)]
 #[allow(clippy::panic)]
 mod tests {
     use super::*;
-    use crate::element::lattice;
 
     /// The unit face, its nodes moved by a map.
     fn face(cell: Cell, order: Order, map: impl Fn(DVec3) -> DVec3) -> WallFace {
@@ -168,6 +201,33 @@ mod tests {
                     };
                     assert_eq!(verdict(&face(cell, order, bowl)), Verdict::Valid, "{cell} {order}");
                 }
+            }
+        }
+    }
+
+    /// A face that lies flat and curls up at its end, to 141 degrees, where it leans by 103 degrees against its chord. It does not
+    /// fold; where it curls on to 196 degrees, its normals fit into no half space.
+    #[test]
+    fn a_face_that_curls_is_no_fold() {
+        for cell in FACES {
+            for order in Order::all().filter(|order| order.get() >= 3) {
+                let curl = |x: DVec3| placed(DVec3::new(x.x - x.x.powi(3) * 2.0 / 3.0, x.y, 0.8 / 3.0 * x.x.powi(3)));
+                let curled = face(cell, order, curl);
+                let end = (basis::gradients(cell, order, [1.0, 0.0, 0.0]).iter().zip(&curled.points))
+                    .fold([DVec3::ZERO; 2], |[u, v], (s, x)| [u + *x * s[0], v + *x * s[1]]);
+                assert!(
+                    end[0].cross(end[1]).dot(mean_normal(&curled.corners)) < 0.0,
+                    "{cell} {order} leans too little"
+                );
+                assert_eq!(verdict(&curled), Verdict::Valid, "{cell} {order}");
+                let more = |x: DVec3| {
+                    placed(DVec3::new(
+                        x.x - x.x.powi(3) * 2.0 / 3.0,
+                        x.y,
+                        0.8 * (x.x.powi(2) / 2.0 - x.x.powi(3) * 0.45),
+                    ))
+                };
+                assert!(matches!(verdict(&face(cell, order, more)), Verdict::Invalid { .. }), "{cell} {order}");
             }
         }
     }

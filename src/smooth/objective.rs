@@ -7,6 +7,7 @@ use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use super::Anchor;
+use super::density::Density;
 use super::kernel::{Element, Kernel, NodeDerivative, Weights};
 use super::patch::{Patch, Run};
 use super::survey::Scratch;
@@ -21,6 +22,8 @@ pub(super) struct Objective<'a> {
     pub(super) kernels: Vec<&'a Kernel>,
     /// How each element is cut, in the order of [`Patch::elements`].
     pub(super) cuts: Vec<Cut>,
+    /// Each element's regularisation of determinants, in the same order; it takes the place of that in `weights`.
+    pub(super) deltas: Vec<f64>,
     pub(super) weights: Weights,
     /// Nodes of the patch that are drawn back, rising.
     pub(super) anchors: Vec<(usize, Anchor)>,
@@ -61,7 +64,7 @@ impl Objective<'_> {
             own.par_chunks_mut(TASK).enumerate().for_each_init(Gathered::default, |gathered, (task, values)| {
                 for (value, e) in values.iter_mut().zip(task * TASK..) {
                     let (element, scratch) = self.gather(run, e, x, gathered);
-                    *value = kernel.value(&element, &self.weights, scratch);
+                    *value = kernel.value(&element, &self.weights_of(run, e), scratch);
                 }
             });
         }
@@ -86,7 +89,7 @@ impl Objective<'_> {
                 |gathered, (task, (values, out))| {
                     for ((value, out), e) in values.iter_mut().zip(out.chunks_mut(run.stride)).zip(task * TASK..) {
                         let (element, scratch) = self.gather(run, e, x, gathered);
-                        *value = kernel.derivatives(&element, &self.weights, scratch, out);
+                        *value = kernel.derivatives(&element, &self.weights_of(run, e), scratch, out);
                     }
                 },
             );
@@ -106,6 +109,11 @@ impl Objective<'_> {
             nodes[node].hessian += DMat3::from_diagonal(DVec3::splat(stiffness));
         }
         values.iter().sum::<f64>() + self.springs(x)
+    }
+
+    fn weights_of(&self, run: &Run, element: usize) -> Weights {
+        let delta = self.deltas[run.first + element];
+        Weights { density: Density { delta, ..self.weights.density }, ..self.weights }
     }
 
     fn springs(&self, x: &[DVec3]) -> f64 {
