@@ -108,23 +108,26 @@ pub(crate) enum Fall<'a> {
 }
 
 impl Fall<'_> {
-    /// That mesh; where it was skipped, it is made now.
-    pub(crate) fn below(self) -> Option<Below> {
+    /// That mesh; where it was skipped, it is made now, unless `watch` ends that.
+    pub(crate) fn below(self, watch: &mut dyn FnMut(Progress) -> bool) -> Option<Below> {
         match self {
             Fall::Known(below) => below,
-            Fall::Skipped(mut ascent) => ascent.lower(&mut Clock::new(&mut Silent)).ok()?.0,
+            Fall::Skipped(mut ascent) => {
+                let order = ascent.job.order;
+                ascent.remade(order, &mut Silent(watch)).ok()?
+            }
         }
     }
 }
 
-/// Tells nobody.
-struct Silent;
+/// Tells only of sweeps: the steps of an order that is made a second time are not told again.
+struct Silent<'w>(&'w mut dyn FnMut(Progress) -> bool);
 
-impl Observer for Silent {
+impl Observer for Silent<'_> {
     fn step(&mut self, _: Step) {}
 
-    fn progress(&mut self, _: &Progress) -> bool {
-        true
+    fn progress(&mut self, progress: &Progress) -> bool {
+        (self.0)(*progress)
     }
 }
 
@@ -152,7 +155,7 @@ impl<'a> Ascent<'a> {
 
     /// Goes up to the order asked for.
     pub(crate) fn climb(mut self, clock: &mut Clock) -> Result<Climb<'a>, PipelineError> {
-        let (below, lower_orders) = self.lower(clock)?;
+        let (below, lower_orders) = self.lower(self.job.order, clock)?;
         let ready = self.ready(self.job.order, clock)?;
         let skipped = self.found.is_some() && below.is_none();
         if !skipped {
@@ -164,15 +167,17 @@ impl<'a> Ascent<'a> {
         Ok(Climb { level, below, lower_orders })
     }
 
-    /// Goes through the orders below; those that were done when the checkpoint was kept are left out.
-    fn lower(&mut self, clock: &mut Clock) -> Result<(Option<Below>, Vec<LowerOrder>), PipelineError> {
+    /// Goes through the orders below `end`; those that were done when the checkpoint was kept are left out.
+    fn lower(&mut self, end: Order, clock: &mut Clock) -> Result<(Option<Below>, Vec<LowerOrder>), PipelineError> {
         let mut below: Option<Below> = None;
+        let mut skipped = false;
         let mut lower_orders = Vec::new();
         let direct = self.job.direct || self.job.smoothing.engine == Engine::Gradient;
-        let between = |order: &Order| *order > Order::LINEAR && *order < self.job.order && !direct;
+        let between = |order: &Order| *order > Order::LINEAR && *order < end && !direct;
         for order in Order::all().filter(between).collect::<Vec<_>>() {
             let ready = self.ready(order, clock)?;
             if self.found.as_ref().is_some_and(|found| found.nodes() > ready.elevated.mesh.points.len()) {
+                skipped = true;
                 continue;
             }
             let level = self.level(ready, below.as_ref(), clock)?;
@@ -180,12 +185,20 @@ impl<'a> Ascent<'a> {
             lower_orders.push(LowerOrder { order, sweeps, stopped, start, end });
             if end.inverted == 0 {
                 below = Some(level.into());
+            } else if std::mem::take(&mut skipped) && !stopped {
+                below = self.remade(order, &mut Silent(&mut |progress| clock.observer.progress(&progress)))?;
             }
             if stopped {
                 break;
             }
         }
         Ok((below, lower_orders))
+    }
+
+    /// The highest order below `end` at which no element is inverted, made once more; `None` also where `silent` ends that.
+    fn remade(&mut self, end: Order, silent: &mut Silent) -> Result<Option<Below>, PipelineError> {
+        let (below, lower_orders) = self.lower(end, &mut Clock::new(silent))?;
+        Ok(below.filter(|_| lower_orders.iter().all(|lower| !lower.stopped)))
     }
 
     /// Elevates and projects.

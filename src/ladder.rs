@@ -13,6 +13,7 @@
 //! at 0.02, with all faces at a quarter of their curve.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::ascent::Fall;
 use crate::associate::{Association, Boundary, Host};
@@ -79,14 +80,15 @@ impl Ladder<'_> {
             return Climbed { given_up: Vec::new(), proof, straight };
         }
         let straight = self.elevated.mesh.points.clone();
-        let fallback = self.fallback(&straight);
+        let fallback = self.fallback(&straight, &mut watch);
         let mut shares = vec![1.0; straight.len()];
         for rung in 0..=ROUNDS {
-            if proof.holds() || smoothed.stopped {
-                break;
+            let failing = proof.failing(&self.elevated.mesh, self.boundary);
+            if failing.is_empty() || smoothed.stopped {
+                break; // a face may fail that no element stands on
             }
             if rung > 0 {
-                self.take_back(rung, &proof, &fallback, &mut places, &mut shares);
+                self.take_back(rung, &failing, &fallback, &mut places, &mut shares);
             } else if proof.certificate.holds() {
                 continue; // smoothing does not look at folds of faces
             }
@@ -150,8 +152,8 @@ impl Ladder<'_> {
     }
 
     /// The curved mesh of the order below where it is proven valid, otherwise the straight one.
-    fn fallback(&mut self, straight: &[DVec3]) -> Fallback {
-        if let Some(below) = self.below.take().and_then(Fall::below) {
+    fn fallback(&mut self, straight: &[DVec3], watch: &mut dyn FnMut(smooth::Progress) -> bool) -> Fallback {
+        if let Some(below) = self.below.take().and_then(|fall| fall.below(watch)) {
             let mut places = below.raised(&self.elevated.mesh);
             places.iter_mut().zip(straight).for_each(|(place, straight)| *place += *straight);
             self.ties.apply(&mut places);
@@ -166,17 +168,18 @@ impl Ladder<'_> {
     fn take_back(
         &mut self,
         round: usize,
-        proof: &Proof,
+        failing: &[usize],
         fallback: &Fallback,
         places: &mut [DVec3],
         shares: &mut [f64],
     ) {
         let straight = &self.elevated.mesh.points;
-        let spots = self.spots(proof, straight, round);
+        let spots = self.spots(failing, straight, round);
         let keep = if round == ROUNDS { 0.0 } else { 0.5 };
         let moves = |n: usize| fallback.order > Order::LINEAR || self.on_wall(n);
         let share = |n: usize| spots.iter().map(|spot| spot.share(straight[n], keep)).fold(1.0, f64::min);
-        let mut own: Vec<f64> = (0..straight.len()).map(|n| if moves(n) { share(n) } else { 1.0 }).collect();
+        let own = (0..straight.len()).into_par_iter().map(|n| if moves(n) { share(n) } else { 1.0 });
+        let mut own: Vec<f64> = own.collect();
         self.ties.least(&mut own);
         let carried = |ladder: &Ladder| {
             perturb(ladder.elevated, ladder.boundary, ladder.association, ladder.projected, ladder.ties)
@@ -207,18 +210,18 @@ impl Ladder<'_> {
         matches!(host, Host::Surface(_) | Host::Curve(_)) && self.association.plane_of(host).is_none()
     }
 
-    fn spots(&self, proof: &Proof, straight: &[DVec3], round: usize) -> Vec<Spot> {
+    fn spots(&self, failing: &[usize], straight: &[DVec3], round: usize) -> Vec<Spot> {
         let mesh = &self.elevated.mesh;
         let elements: Vec<&[NodeId]> = mesh.blocks_of(3).flat_map(|(_, block)| block.elements(mesh.order)).collect();
         let wall: Vec<DVec3> = (0..straight.len()).filter(|&n| self.on_wall(n)).map(|n| straight[n]).collect();
-        let spot = |element: usize| {
+        let spot = |&element: &usize| {
             let nodes = elements[element];
             let middle = nodes.iter().map(|n| straight[n.index()]).sum::<DVec3>() / nodes.len() as f64;
             let size = nodes.iter().map(|n| straight[n.index()].distance(middle)).fold(0.0, f64::max);
             let nearest = wall.iter().map(|w| w.distance_squared(middle)).fold(f64::INFINITY, f64::min).sqrt();
             Spot { middle, reach: REACH * round as f64 * (nearest + size) }
         };
-        proof.failing(mesh, self.boundary).into_iter().map(spot).collect()
+        failing.par_iter().map(spot).collect()
     }
 }
 

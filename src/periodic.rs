@@ -79,12 +79,7 @@ impl Ties {
 
     /// Marks both sides of every pair of which one is marked.
     pub fn spread(&self, marked: &mut [bool]) {
-        for &Image { node: slave, of: lead, .. } in &self.images {
-            marked[lead.index()] |= marked[slave.index()];
-        }
-        for &Image { node: slave, of: lead, .. } in &self.images {
-            marked[slave.index()] |= marked[lead.index()];
-        }
+        Image::spread(&self.images, marked);
     }
 
     /// Gives both sides of every pair the lesser value.

@@ -249,6 +249,9 @@ pub struct Curved {
 pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineError> {
     let mut clock = Clock::new(observer);
     clock.step(Step::Read);
+    if !formats::is_mesh(&job.mesh)? {
+        read_linear(&job.mesh)?; // says so before the CAD is waited for
+    }
     let (linear, model) = rayon::join(|| read_linear(&job.mesh), || read_model(job));
     let (mut linear, model) = (linear?, model?);
 

@@ -41,7 +41,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::associate::{Association, Boundary, BoundaryFace, Host};
+use crate::associate::{Association, Boundary, Host};
 use crate::element::{Cell, Order, interior_count, interior_extension, interior_start};
 use crate::elevate::Elevated;
 use crate::mesh::NodeId;
@@ -216,19 +216,17 @@ impl Projector<'_> {
     fn faces(&mut self, boundary: &Boundary) {
         let order = self.elevated.mesh.order;
         let elevated = self.elevated;
-        let nodes = |face: &BoundaryFace| {
-            let block = &elevated.mesh.blocks[face.block];
-            let stride = block.stride(order);
-            block.nodes[face.element * stride..(face.element + 1) * stride].split_at(interior_start(face.cell, order))
-        };
-        for (faces, hosts) in boundary.faces.chunks(BATCH).zip(self.association.faces.chunks(BATCH)) {
-            let own = |(face, &host): (&BoundaryFace, &Host)| {
-                let (rim, inner) = nodes(face);
-                self.feet(host, &self.wishes(face.cell, rim, inner))
+        let cell = |f: usize| boundary.faces[f].cell;
+        let nodes = |f: usize| boundary.nodes(f, &elevated.mesh).split_at(interior_start(cell(f), order));
+        let faces: Vec<usize> = (0..boundary.faces.len()).collect();
+        for (faces, hosts) in faces.chunks(BATCH).zip(self.association.faces.chunks(BATCH)) {
+            let own = |(&f, &host): (&usize, &Host)| {
+                let (rim, inner) = nodes(f);
+                self.feet(host, &self.wishes(cell(f), rim, inner))
             };
             let feet: Vec<Feet> = faces.par_iter().zip(hosts).map(own).collect();
-            for ((face, &host), feet) in faces.iter().zip(hosts).zip(feet) {
-                let (rim, inner) = nodes(face);
+            for ((&f, &host), feet) in faces.iter().zip(hosts).zip(feet) {
+                let (rim, inner) = nodes(f);
                 let size = self.straight(rim[0]).distance(self.straight(rim[1]));
                 for node in inner {
                     self.result.hosts[node.index()] = host;

@@ -23,6 +23,7 @@ fn climb(threads: &str) -> (Vec<u8>, [f64; 2], usize) {
 #[test]
 fn the_papers_engine_climbs_alike_on_any_number_of_threads() {
     let (mesh, [start, end], rows) = climb("1");
+    // From .659 to .745 within 40 sweeps; .60 to .75 before the walls were fitted, which begins better.
     assert!(end > start + 0.05, "min C_JAC {start} -> {end}");
     assert_eq!(rows, 1 + 40 + 1, "head, sweeps, end");
     for threads in ["2", "7"] {

@@ -29,14 +29,12 @@ fn levels(
 ) -> BTreeMap<usize, f64> {
     let order = elevated.mesh.order;
     let mut levels = BTreeMap::new();
-    for (face, host) in boundary.faces.iter().zip(&association.faces) {
+    for (f, (face, host)) in boundary.faces.iter().zip(&association.faces).enumerate() {
         let Host::Surface(surface) = *host else { continue };
         if association.plane_of(*host).is_some() {
             continue; // its inner edges are carried by the perturbation
         }
-        let block = &elevated.mesh.blocks[face.block];
-        let stride = block.stride(order);
-        let nodes = &block.nodes[face.element * stride..][..stride];
+        let nodes = boundary.nodes(f, &elevated.mesh);
         let samples = Samples::survey(face.cell, Order::LINEAR, DENSITY * order.get());
         for &at in &samples.points()[..samples.count()] {
             let place = |n: usize| elevated.mesh.points[n] + projected.displacement[n];

@@ -45,7 +45,7 @@ fn order_by_order_too() {
     let file = |name: &str| folder.path().join(name);
     let [whole, second, report, high, low] = ["whole.msh", "second.msh", "report.json", "high", "low"].map(file);
     let keep = |out: &Path, order: &str, state: &Path| {
-        curve(out, order, "25", &["--checkpoint", text(state), "--checkpoint-every", "20"]).expect(0);
+        curve(out, order, "25", &["--checkpoint", text(state), "--checkpoint-every", "10"]).expect(0);
     };
     keep(&second, "2", &low);
     keep(&whole, "3", &high);
@@ -68,15 +68,23 @@ fn falls_back_as_without_interruption() {
     let [whole, second, report, state] = ["whole.msh", "second.msh", "report.json", "state"].map(file);
     let case = |end: &str| root().join(format!("fixtures/torus_coarse/torus.{end}"));
     let [mesh, cad, linkage] = ["msh", "step", "meshlink.xml"].map(case);
-    let curve = |out: &Path, more: [&str; 2]| {
+    let curve = |out: &Path, order: &str, more: &[&str]| {
         let files = args!["curve", mesh, "--cad", cad, "--linkage", linkage, "-o", out];
-        let options = args!["--order", "3", "--max-sweeps", "30", "--quiet", "--report", report];
+        let options = args!["--order", order, "--max-sweeps", "30", "--quiet", "--report", report];
         sagitta(files.into_iter().chain(options).chain(more.iter().map(Into::into))).expect(3);
+        json(&report)["smoothing"]["lower_orders"].clone()
     };
-    curve(&whole, ["--checkpoint", text(&state)]);
-    curve(&second, ["--resume", text(&state)]);
-    assert_eq!(json(&report)["smoothing"]["lower_orders"], serde_json::json!([]), "the checkpoint is of P3");
-    assert!(fs::read(&second).unwrap() == fs::read(&whole).unwrap(), "other bytes than without interruption");
+    let bytes = |path: &Path| fs::read(path).unwrap();
+    curve(&whole, "3", &["--checkpoint", text(&state)]);
+    assert_eq!(curve(&second, "3", &["--resume", text(&state)]), serde_json::json!([]), "the checkpoint is of P3");
+    assert!(bytes(&second) == bytes(&whole), "other bytes than without interruption");
+
+    // P3 comes out inverted, so that P4 begins at P2, which the run that goes on from P3 has not made.
+    let lower = curve(&whole, "4", &[]);
+    let inverted = |order: usize| lower[order]["end"]["inverted"].as_u64().unwrap();
+    assert!(inverted(0) == 0 && inverted(1) > 0, "{lower}");
+    curve(&second, "4", &["--resume", text(&state)]);
+    assert!(bytes(&second) == bytes(&whole), "P4: other bytes than without interruption");
 }
 
 #[test]

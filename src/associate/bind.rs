@@ -352,16 +352,16 @@ impl Binder<'_> {
             around.iter().filter_map(|r| if let Rank::Curve(c) = r { Some(*c) } else { None }).collect();
         match curves[..] {
             [] => around.first().map_or(Host::Free, |rank| rank.host()),
-            [only] => Host::Curve(only),
-            _ => {
-                let near = self.model.vertices().iter().map(|v| (v.point.distance(x), v.point));
-                let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0));
-                match nearest {
-                    Some((distance, point)) if distance <= self.slack => Host::Vertex(point),
-                    _ => Host::Curve(curves[0]),
-                }
-            }
+            [only] if self.result.curves[only].group.entities().len() == 1 => Host::Curve(only),
+            [first, ..] => self.vertex(x).map_or(Host::Curve(first), Host::Vertex),
         }
+    }
+
+    /// The CAD vertex at a place: where curves meet, or the edges of one curve do, perhaps at an angle.
+    fn vertex(&self, x: DVec3) -> Option<DVec3> {
+        let near = self.model.vertices().iter().map(|v| (v.point.distance(x), v.point));
+        let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0));
+        nearest.filter(|(distance, _)| *distance <= self.slack).map(|(_, point)| point)
     }
 }
 

@@ -94,6 +94,9 @@ pub fn fit(
             break;
         }
     }
+    // Faces that stay off the CAD share edges with those on it.
+    let straight = |&face: &usize| association.faces[face] == Host::Straight;
+    fit.lead(&(0..boundary.faces.len()).filter(straight).map(Part::Face).collect::<Vec<_>>());
 }
 
 struct Fit<'a> {
@@ -287,22 +290,22 @@ impl Fit<'_> {
         }
     }
 
-    /// Puts the nodes inside faces where their rims take them, on the CAD.
+    /// Puts the nodes inside faces where their rims take them, on the CAD where the faces are.
     fn lead(&mut self, parts: &[Part]) {
-        let inner = |&part: &Part| -> Vec<(NodeId, Foot)> {
+        let inner = |&part: &Part| -> Vec<(NodeId, DVec3, Option<Foot>)> {
             let (nodes, rim, table) = (self.nodes(part), self.rim(part), &self.tables[&self.cell(part)]);
-            let Some(group) = self.group(self.host(part)) else { return Vec::new() };
+            let group = self.group(self.host(part));
             let inner = nodes[rim.len()..].iter().zip(table.extension.chunks_exact(rim.len()));
             let foot = |(&node, weights): (&NodeId, &[f64])| {
                 let moved = |(n, &w): (&NodeId, &f64)| self.projected.displacement[n.index()] * w;
                 let wish = self.straight(node) + rim.iter().zip(weights).map(moved).sum::<DVec3>();
-                (node, group.closest(wish, None))
+                (node, wish, group.map(|group| group.closest(wish, None)))
             };
             inner.map(foot).collect()
         };
-        let feet: Vec<Vec<(NodeId, Foot)>> = parts.par_iter().map(inner).collect();
-        for (node, foot) in feet.into_iter().flatten() {
-            self.put(node, Some(&foot), foot.point);
+        let feet: Vec<Vec<(NodeId, DVec3, Option<Foot>)>> = parts.par_iter().map(inner).collect();
+        for (node, wish, foot) in feet.into_iter().flatten() {
+            self.put(node, foot.as_ref(), wish);
         }
     }
 

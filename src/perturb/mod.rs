@@ -126,12 +126,7 @@ fn sum(
 fn wall_faces(elevated: &Elevated, boundary: &Boundary, of: impl Fn(usize) -> bool) -> Vec<WallFace> {
     (0..boundary.faces.len())
         .filter(|&f| of(f))
-        .map(|f| {
-            let face = &boundary.faces[f];
-            let block = &elevated.mesh.blocks[face.block];
-            let stride = block.stride(elevated.mesh.order);
-            WallFace { cell: face.cell, nodes: block.nodes[face.element * stride..][..stride].to_vec() }
-        })
+        .map(|f| WallFace { cell: boundary.faces[f].cell, nodes: boundary.nodes(f, &elevated.mesh).to_vec() })
         .collect()
 }
 

@@ -143,13 +143,11 @@ fn patch(curved: &Curved, entity: EntityKey) -> PatchReport {
 fn distance(curved: &Curved, face: usize) -> Option<f64> {
     let Host::Surface(surface) = curved.association.faces[face] else { return None };
     let group = &curved.association.surfaces[surface].group;
-    let (order, own) = (curved.mesh.order, &curved.boundary.faces[face]);
-    let block = &curved.mesh.blocks[own.block];
-    let stride = block.stride(order);
-    let nodes = &block.nodes[own.element * stride..][..stride];
-    let samples = Samples::survey(own.cell, Order::LINEAR, DISTANCE_DENSITY * order.get());
+    let (order, cell) = (curved.mesh.order, curved.boundary.faces[face].cell);
+    let nodes = curved.boundary.nodes(face, &curved.mesh);
+    let samples = Samples::survey(cell, Order::LINEAR, DISTANCE_DENSITY * order.get());
     let far = samples.points()[..samples.count()].iter().map(|&at| {
-        let values = basis::values(own.cell, order, at);
+        let values = basis::values(cell, order, at);
         let x: DVec3 = nodes.iter().zip(values).map(|(n, v)| curved.mesh.points[n.index()] * v).sum();
         group.closest(x, None).distance
     });

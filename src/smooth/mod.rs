@@ -84,6 +84,18 @@ pub struct Image {
     pub map: DAffine3,
 }
 
+impl Image {
+    /// Marks originals and all their images where one of them is marked.
+    pub(crate) fn spread(images: &[Image], marked: &mut [bool]) {
+        for Image { node, of, .. } in images {
+            marked[of.index()] |= marked[node.index()];
+        }
+        for Image { node, of, .. } in images {
+            marked[node.index()] |= marked[of.index()];
+        }
+    }
+}
+
 /// A spring that holds a wall node near its place among its neighbours: the wall polynomial follows the CAD only as well
 /// as its nodes are spread. The objective grows by 1 where the node is `slack` away.
 #[derive(Clone, Copy, Debug, PartialEq)]

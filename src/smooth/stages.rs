@@ -267,10 +267,7 @@ impl Run<'_, '_> {
                     touched[node.index()] = true;
                 }
             }
-            for Image { node, of, .. } in self.constraint.images() {
-                let either = touched[node.index()] || touched[of.index()];
-                (touched[node.index()], touched[of.index()]) = (either, either);
-            }
+            Image::spread(self.constraint.images(), &mut touched);
             for (e, active) in active.iter_mut().enumerate() {
                 *active |= self.problem.nodes(e).iter().any(|n| touched[n.index()]);
             }
