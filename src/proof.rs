@@ -1,13 +1,16 @@
 //! What is proven of a curved mesh: that its elements are valid, and that its faces on the CAD do not fold.
 
+use cad::Group;
 use glam::DVec3;
 use rustc_hash::FxHashSet;
 
 use crate::associate::{Association, Boundary, Host, normal_at};
 use crate::certify::{self, Certificate, WallFace, Walls};
-use crate::element::Cell;
+use crate::element::{Cell, Order, Samples, basis};
 use crate::mesh::{Mesh, NodeId};
 
+/// Divisions an edge, times the order, at which a face that leans far is compared with the CAD's normals.
+const SURVEY: usize = 4;
 /// Steps towards the middle of normals.
 const TURNS: u32 = 30;
 
@@ -63,20 +66,27 @@ pub(crate) fn walls(
     };
     let other = |f: usize| {
         let Host::Surface(surface) = association.faces[f] else { return None };
-        let group = &association.surfaces.get(surface)?.group;
-        let normals = mesh.points_of(boundary.nodes(f, mesh)).filter_map(|x| normal_at(group, x));
-        let corners: Vec<DVec3> = boundary.corners[f].iter().map(|n| linear[n.index()]).collect();
-        middle(&towards(certify::mean_normal(&corners), normals.collect()))
+        axis(mesh, boundary, f, &association.surfaces.get(surface)?.group)
     };
     certify::walls(&numbers, face, other, &certify::Settings::default())
 }
 
-/// Normals of a surface, turned to the side of `m` all together: one of them alone may rightly be on the other side.
-fn towards(m: DVec3, mut normals: Vec<DVec3>) -> Vec<DVec3> {
-    if normals.iter().map(|n| n.dot(m)).sum::<f64>() < 0.0 {
-        normals.iter_mut().for_each(|normal| *normal = -*normal);
+/// The middle of a face's normals, where they are all on the side of the CAD's normals beside them; as surveyed, not proven.
+fn axis(mesh: &Mesh, boundary: &Boundary, face: usize, group: &Group) -> Option<DVec3> {
+    let (cell, order) = (boundary.faces[face].cell, mesh.order);
+    let nodes: Vec<DVec3> = mesh.points_of(boundary.nodes(face, mesh)).collect();
+    let samples = Samples::survey(cell, Order::LINEAR, SURVEY * order.get());
+    let (mut own, mut agreement) = (Vec::new(), Vec::new());
+    for &at in &samples.points()[..samples.count()] {
+        let (values, slopes) = (basis::values(cell, order, at), basis::gradients(cell, order, at));
+        let place: DVec3 = nodes.iter().zip(values).map(|(x, v)| *x * v).sum();
+        let along = |axis: usize| -> DVec3 { nodes.iter().zip(&slopes).map(|(x, s)| *x * s[axis]).sum() };
+        let normal = along(0).cross(along(1)).try_normalize()?;
+        agreement.extend(normal_at(group, place).map(|cad| cad.dot(normal)));
+        own.push(normal);
     }
-    normals
+    let alike = |sign: f64| agreement.iter().all(|cosine| cosine * sign > 0.0);
+    if alike(1.0) || alike(-1.0) { middle(&own) } else { None }
 }
 
 /// The axis of the narrowest cone around unit vectors, nearly (Badoiu and Clarkson 2003, "Smaller core-sets for balls").

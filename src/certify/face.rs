@@ -8,8 +8,8 @@
 //! `m` is not the only vector that will do: a face whose normals have a positive product with any one vector is a graph over the
 //! plane across it, without folds and without crossing itself. On a strongly curved wall a coarse face rightly leans by more
 //! than 90 degrees against its linear face: those of the torus at scale 0.5 stand at up to 87 degrees to the wall itself in their
-//! corners. Where `m` does not prove it, another vector is asked for, on the side of `m`: the middle of the CAD's normals
-//! ([`crate::proof`]). It must not come from the face itself, which could then double back over a flat wall.
+//! corners. Where `m` does not prove it, another vector is asked for, on the side of `m`: the middle of the face's own normals, if
+//! a survey finds them all on the side of the CAD's normals ([`crate::proof`]); a face that doubles back over its wall is none such.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -143,7 +143,7 @@ impl Judge {
 }
 
 /// The unit mean normal of a linear face: that of a triangle, the cross product of a quadrilateral's diagonals.
-pub(crate) fn mean_normal(corners: &[DVec3]) -> DVec3 {
+fn mean_normal(corners: &[DVec3]) -> DVec3 {
     let fan = corners.windows(2).skip(1).map(|pair| (pair[0] - corners[0]).cross(pair[1] - corners[0]));
     fan.sum::<DVec3>().normalize_or_zero()
 }

@@ -33,7 +33,6 @@ mod verdict;
 
 pub use certificate::{Certificate, Judged, Tally, certify, mesh};
 pub use elements::{Buffer, Elements, MeshElements};
-pub(crate) use face::mean_normal;
 pub use face::{FaceFinding, WallFace, Walls, walls};
 pub use judge::{Judge, Shape};
 pub use verdict::{Bounds, Finding, Method, Verdict};
