@@ -103,6 +103,28 @@ fn scale_moves_coordinates_and_tolerances_but_not_the_unit() {
     }
 }
 
+/// A unit with a name of its own is told by its conversion factor.
+#[test]
+fn an_unknown_unit_is_what_its_factor_says() {
+    const MILLIMETRE: &str = "( LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT(.MILLI.,.METRE.) );";
+    let mut text = std::fs::read_to_string(common::path("weeble/weeble.step")).unwrap();
+    for number in 9000.. {
+        let Some(at) = text.find(MILLIMETRE).filter(|_| number < 9030) else { break };
+        let odd = format!(
+            "( CONVERSION_BASED_UNIT('ODDUNIT',#{number}1) LENGTH_UNIT() NAMED_UNIT(#{number}2) );\n\
+             #{number}2 = DIMENSIONAL_EXPONENTS(1.,0.,0.,0.,0.,0.,0.);\n\
+             #{number}1 = LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(12.5),#{number}3);\n\
+             #{number}3 = ( LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT(.MILLI., .METRE.) );"
+        );
+        text.replace_range(at..at + MILLIMETRE.len(), &odd);
+    }
+    let file = tempfile::NamedTempFile::with_suffix(".step").unwrap();
+    std::fs::write(file.path(), text).unwrap();
+    let (odd, plain) = (Model::read(file.path(), &options()).unwrap(), fixture("weeble/weeble.step"));
+    assert_eq!(odd.unit().metres, Some(0.0125));
+    assert!((odd.diagonal() / plain.diagonal() - 1.0).abs() < 1e-12, "coordinates are those of the file");
+}
+
 #[test]
 fn bad_files_get_errors() {
     let dir = tempfile::tempdir().unwrap();

@@ -98,7 +98,7 @@ pub(super) struct Options {
     /// Keep the state of the smoothing in this file, to go on from after a crash or a full queue
     #[arg(long, value_name = "FILE")]
     checkpoint: Option<PathBuf>,
-    /// Sweeps from one checkpoint to the next; it is written at the end of the round of 10 sweeps
+    /// Sweeps from one checkpoint to the next; it is written at the end of a round of 10 to 40 sweeps
     #[arg(long, value_name = "N", default_value_t = 20, requires = "checkpoint")]
     checkpoint_every: usize,
     /// Go on from a checkpoint, to the same bytes as without the interruption

@@ -142,7 +142,8 @@ pub struct GivenUpFace {
     pub place: [f64; 3],
 }
 
-/// Curved faces on the CAD: folded where the normal leans by 90 degrees or more against the linear face's.
+/// Curved faces on the CAD: folded where the normal leans by 90 degrees or more against the linear face's, and the face is no graph
+/// over another plane on the CAD's side.
 #[derive(Clone, Debug, Serialize)]
 pub struct WallReport {
     /// How many.

@@ -21,8 +21,13 @@
 #include <STEPConstruct_UnitContext.hxx>
 #include <STEPControl_Controller.hxx>
 #include <STEPControl_Reader.hxx>
+#if __has_include(<StepData_Factors.hxx>) // as of OCCT 7.8; 7.6 has none
+#include <StepData_Factors.hxx>
+#endif
 #include <StepData_StepModel.hxx>
 #include <StepGeom_CartesianPoint.hxx>
+#include <StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx.hxx>
+#include <StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext.hxx>
 #include <StepRepr_NextAssemblyUsageOccurrence.hxx>
 #include <StepRepr_GlobalUnitAssignedContext.hxx>
 #include <StepRepr_RepresentationItem.hxx>
@@ -153,6 +158,15 @@ double millimetres_of(std::string name) {
   return it == known.end() ? 0 : it->second;
 }
 
+// The units of a context, which is nearly always one of the two complex entities.
+Handle(StepRepr_GlobalUnitAssignedContext) units_of(const Handle(Standard_Transient)& entity) {
+  const auto full = Handle(StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx)::DownCast(entity);
+  if (!full.IsNull()) return full->GlobalUnitAssignedContext();
+  const auto geometric = Handle(StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext)::DownCast(entity);
+  if (!geometric.IsNull()) return geometric->GlobalUnitAssignedContext();
+  return Handle(StepRepr_GlobalUnitAssignedContext)::DownCast(entity);
+}
+
 void read_step_unit(const Handle(StepData_StepModel)& model, STEPControl_Reader& reader, Source& source) {
   TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
   reader.FileUnits(lengths, angles, solid_angles);
@@ -161,10 +175,14 @@ void read_step_unit(const Handle(StepData_StepModel)& model, STEPControl_Reader&
   if (source.millimetres > 0) return;
   // a unit that only its conversion factor describes
   for (int i = 1; i <= model->NbEntities(); i++) {
-    auto context = Handle(StepRepr_GlobalUnitAssignedContext)::DownCast(model->Value(i));
+    const auto context = units_of(model->Value(i));
     if (context.IsNull()) continue;
     STEPConstruct_UnitContext units;
+#if __has_include(<StepData_Factors.hxx>)
+    units.ComputeFactors(context, StepData_Factors()); // to millimetres
+#else
     units.ComputeFactors(context);
+#endif
     if (units.LengthDone() && units.LengthFactor() > 0) source.millimetres = units.LengthFactor();
   }
   if (source.millimetres <= 0) throw std::runtime_error("unknown unit of length: " + source.unit);
