@@ -6,11 +6,11 @@ mod common;
 
 use std::collections::BTreeMap;
 
-use cad::{Group, Model, ReadOptions};
+use cad::{EntityId, FaceId, Group, Model, ReadOptions};
 use common::fixture;
 use glam::DVec3;
-use sagitta::associate::{Association, Boundary, Host, tie};
-use sagitta::element::{Order, Samples, basis};
+use sagitta::associate::{Association, Boundary, Host, Surface, tie};
+use sagitta::element::{Order, Samples, basis, interior_extension, interior_start};
 use sagitta::elevate::{Elevated, elevate};
 use sagitta::fit::fit;
 use sagitta::formats;
@@ -116,4 +116,36 @@ fn a_cylinder_stays_as_projected() {
     let Outcome { before, after, slid } = Outcome::of("cylinder_bl", 2);
     assert_eq!(slid, 0.0);
     assert_eq!(before, after);
+}
+
+/// Faces left straight beside fitted ones: what lies inside them goes with their rims.
+#[test]
+fn the_inside_of_straight_faces_follows_their_rims() {
+    let (linear, order) = (formats::read(&fixture("weeble", "msh")).unwrap(), Order::new(3).unwrap());
+    let boundary = Boundary::new(&linear);
+    let reading = ReadOptions { reader: env!("CARGO_BIN_EXE_sagitta").into(), ..ReadOptions::default() };
+    let model = Model::read(&fixture("weeble", "step"), &reading).unwrap();
+    let mut association = tie(None, &linear, &boundary, &model, 1e-3, &|_| {}).unwrap().association;
+    let third = |surface: &Surface| surface.group.entities() == [EntityId::Face(FaceId::new(2))];
+    let waist = association.surfaces.iter().position(third).unwrap();
+    let straight: Vec<usize> =
+        (0..boundary.faces.len()).filter(|&f| association.faces[f] == Host::Surface(waist)).collect();
+    straight.iter().for_each(|&f| association.faces[f] = Host::Straight);
+    let mut elevated = elevate(&linear, order).unwrap();
+    let (ties, _) = Ties::new(&mut elevated, &boundary, false);
+    let mut projected = project(&elevated, &boundary, &association, false);
+    let before = projected.displacement.clone();
+    fit(&elevated, &boundary, &association, &ties, &mut projected);
+    let mut beside = 0;
+    for face in straight {
+        let cell = boundary.faces[face].cell;
+        let (rim, inner) = boundary.nodes(face, &elevated.mesh).split_at(interior_start(cell, order));
+        beside += usize::from(rim.iter().any(|n| projected.displacement[n.index()] != before[n.index()]));
+        for (node, weights) in inner.iter().zip(interior_extension(cell, order).chunks_exact(rim.len())) {
+            let wanted: DVec3 = rim.iter().zip(weights).map(|(n, w)| projected.displacement[n.index()] * *w).sum();
+            let off = projected.displacement[node.index()].distance(wanted);
+            assert!(off < 1e-12, "face {face}: its inner node is {off:e} off");
+        }
+    }
+    assert!(beside > 0, "no straight face has an edge that slid");
 }

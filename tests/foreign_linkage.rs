@@ -9,6 +9,7 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use common::{fixture, root, sagitta};
+use sagitta::associate::{Boundary, Host, tie};
 
 fn m6(extension: &str) -> PathBuf {
     root().join("fixtures/onera_m6/onera_m6").with_extension(extension)
@@ -29,6 +30,32 @@ fn m6_with(change: impl FnOnce(String) -> String) -> (Option<i32>, Vec<(String, 
 
 fn line_of(text: &str, needle: &str) -> u64 {
     1 + text[..text.find(needle).unwrap()].matches('\n').count() as u64
+}
+
+/// Strings of the M6 run along several CAD edges; the nodes where these meet are held there, also without a point that says so.
+#[test]
+fn nodes_where_the_edges_of_a_string_meet_are_held() {
+    let linear = sagitta::formats::read(&m6("msh")).unwrap();
+    let boundary = Boundary::new(&linear);
+    let reading = cad::ReadOptions { reader: env!("CARGO_BIN_EXE_sagitta").into(), ..cad::ReadOptions::default() };
+    let model = cad::Model::read(&m6("egads"), &reading).unwrap();
+    let [linkage, mesh] = [m6("meshlink.xml"), m6("msh")];
+    let association = tie(Some([&linkage, &mesh]), &linear, &boundary, &model, 1e-3, &|_| {}).unwrap().association;
+    let mut held = 0;
+    for (node, place) in linear.points.iter().enumerate() {
+        let around = (0..boundary.edges.len()).filter(|&e| boundary.edges[e].iter().any(|n| n.index() == node));
+        let around: Vec<Host> =
+            around.map(|e| association.edges[e]).filter(|host| matches!(host, Host::Curve(_))).collect();
+        let one = around.windows(2).all(|pair| pair[0] == pair[1]);
+        let at_vertex = model.vertices().iter().any(|vertex| vertex.point.distance(*place) < 1e-6);
+        if let (Some(Host::Curve(curve)), true, true) = (around.first(), one, at_vertex)
+            && association.curves[*curve].group.entities().len() > 1
+        {
+            assert!(matches!(association.nodes[node], Host::Vertex(_)), "node {node}: {:?}", association.nodes[node]);
+            held += 1;
+        }
+    }
+    assert!(held > 0, "no string of several edges has a node where two of them meet");
 }
 
 #[test]
