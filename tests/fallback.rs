@@ -16,7 +16,7 @@ fn faces_that_cannot_follow_at_p3_keep_their_curve_of_p2() {
     let case = |end: &str| root().join(format!("fixtures/torus_coarse/torus.{end}"));
     let [mesh, cad, linkage] = ["msh", "step", "meshlink.xml"].map(case);
     let files = args!["curve", mesh, "--cad", cad, "--linkage", linkage, "-o", out, "--report", report];
-    let told = sagitta(files.iter().chain(&args!["--order", "3", "--max-sweeps", "30", "--quiet"])).expect(3).stdout;
+    let told = sagitta(files.iter().chain(&args!["--order", "3", "--max-sweeps", "60", "--quiet"])).expect(3).stdout;
     assert!(told.contains("its curve of P2, and "), "{told}");
     let report = json(&report);
     let given_up = report["given_up"].as_array().unwrap();
