@@ -9,8 +9,8 @@
 //! Back means to the curved mesh of the order below, where that is proven valid: on it the wall follows the CAD as well as that order
 //! can, and all nodes go back together. Otherwise it means the straight mesh: the wall goes back, and the volume is carried along as
 //! by the first perturbation, so that layers move whole. The torus at scale 0.5, whose prisms lean by up to 88 degrees off their own
-//! faces, ends at P3 with C_JAC 0.48 and 100 of its 200 faces between their curves of P2 and P3; back to the straight mesh it ended
-//! at 0.02, with all faces at a quarter of their curve.
+//! faces, ended at P3 with C_JAC 0.48 and 100 of its 200 faces between their curves of P2 and P3, before regularisation by element
+//! made it valid on the CAD; back to the straight mesh it ended at 0.02, with all faces at a quarter of their curve.
 
 use glam::DVec3;
 use rayon::prelude::*;
