@@ -3,17 +3,17 @@
 //! The polynomial of the order below is the same polynomial in the order above, so what is left of the walls' displacement is what
 //! the lower order could not follow: a small part, that [`perturb`] carries into the volume as it carries the whole of it at P2.
 //! Sweeps at low order are cheap (a tet of P2 has 10 nodes, one of P4 has 35), and few are left for the high one. Measured on 2
-//! cores before [`crate::fit`] was there, min C_WCN / C_JAC and seconds of the whole run:
+//! cores, min C_WCN / C_JAC and seconds of the whole run:
 //!
 //! | case | `--direct` | order by order |
 //! |---|---|---|
-//! | weeble P3 | 0.928 / 0.786, 1.8 | 0.928 / 0.773, 2.0 |
-//! | weeble P4 | 0.910 / 0.801, 4.7 | 0.911 / 0.775, 6.1 |
-//! | weeble_hybrid P4 | 0.897 / 0.699, 32 | 0.899 / 0.770, 33 |
-//! | wing_sharp 0.4 P3 | 0.828 / 0.616, 2.9 | 0.860 / 0.701, 2.5 |
-//! | wing_sharp 0.4 P4 | 0.765 / 0.424, 6.0 | 0.814 / 0.678, 6.0 |
-//! | wing_blunt 0.4 P4 | 0.885 / 0.595, 11.3 | 0.908 / 0.750, 2.0 |
-//! | nozzle 0.4 P4 | 0.960 / 0.812, 8.3 | 0.933 / 0.805, 4.6 |
+//! | weeble P3 | 0.919 / 0.800, 2.8 | 0.930 / 0.785, 2.5 |
+//! | weeble P4 | 0.910 / 0.804, 7.9 | 0.909 / 0.804, 5.6 |
+//! | weeble_hybrid P4 | 0.893 / 0.660, 48 | 0.892 / 0.800, 7.0 |
+//! | wing_sharp 0.4 P3 | 0.825 / 0.651, 3.0 | 0.859 / 0.722, 2.2 |
+//! | wing_sharp 0.4 P4 | 0.771 / 0.539, 8.7 | 0.813 / 0.720, 7.6 |
+//! | wing_blunt 0.4 P4 | 0.880 / 0.573, 15.6 | 0.914 / 0.719, 10.1 |
+//! | nozzle 0.4 P4 | 0.959 / 0.812, 15.0 | 0.954 / 0.805, 6.1 |
 //!
 //! The paper's engine begins at the order itself, as the paper has it, and so does `--direct`.
 
