@@ -85,7 +85,7 @@ fn axis(mesh: &Mesh, boundary: &Boundary, face: usize, group: &Group) -> Option<
         agreement.extend(normal_at(group, place).map(|cad| cad.dot(normal)));
         own.push(normal);
     }
-    let alike = |sign: f64| agreement.iter().all(|cosine| cosine * sign > 0.0);
+    let alike = |sign: f64| !agreement.is_empty() && agreement.iter().all(|cosine| cosine * sign > 0.0);
     if alike(1.0) || alike(-1.0) { middle(&own) } else { None }
 }
 

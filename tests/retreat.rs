@@ -3,8 +3,9 @@
 
 use std::path::Path;
 
+use cad::{FaceId, Group, Model, ReadOptions};
 use glam::DVec3;
-use sagitta::associate::{Association, Boundary, Host};
+use sagitta::associate::{Association, Boundary, Host, Surface};
 use sagitta::certify::{self, Settings};
 use sagitta::element::{Cell, Order, lattice};
 use sagitta::elevate::elevate;
@@ -13,6 +14,14 @@ use sagitta::mesh::{Block, EntityKey, Mesh, NodeId};
 use sagitta::periodic::Ties;
 use sagitta::proof::Proof;
 use sagitta::retreat::{Fallback, retreat};
+
+/// A face of a fixture's CAD, by its index.
+fn surface(case: &str, face: usize) -> Surface {
+    let reading = ReadOptions { reader: env!("CARGO_BIN_EXE_sagitta").into(), ..ReadOptions::default() };
+    let model = Model::read(Path::new(&format!("fixtures/{case}/{case}.step")), &reading).unwrap();
+    let group = Group::of_faces(&model, &[FaceId::new(face)]).unwrap();
+    Surface { group, label: format!("face {face}"), plane: None }
+}
 
 #[test]
 fn displacements_are_taken_back_until_every_element_is_valid() {
@@ -131,7 +140,9 @@ fn a_folded_wall_face_of_a_valid_element_is_taken_back() {
         mesh.points[node.index()] = overhang(x);
     }
     let boundary = Boundary::new(&linear);
-    let association = Association { faces: vec![Host::Surface(0)], ..Association::default() };
+    // The floor of the plate lies below it: there its normals are compared with the CAD's.
+    let association =
+        Association { faces: vec![Host::Surface(0)], surfaces: vec![surface("plate", 4)], ..Association::default() };
     let first = Proof::of(&mesh, &linear.points, &boundary, &association);
     assert!(first.certificate.holds() && first.walls.folded() == 1, "the face alone must be broken: {first:?}");
 
@@ -141,4 +152,36 @@ fn a_folded_wall_face_of_a_valid_element_is_taken_back() {
     assert!(proof.holds(), "{proof:?}");
     assert!(given_up.len() == 1 && given_up[0].face == 0, "{given_up:?}");
     assert!((0.25..1.0).contains(&given_up[0].share), "no more than it must: {given_up:?}");
+}
+
+/// A triangle on half a cylinder from 20 to 60 degrees along one edge, its third corner at 140: there the wall, and the face with it,
+/// leans by 100 degrees against the linear face. It is no fold, as the CAD leans with it.
+#[test]
+fn a_face_that_leans_as_far_as_its_wall_does_not_fold() {
+    const RADIUS: f64 = 0.5;
+    let order = Order::new(4).unwrap();
+    let place = |at: DVec3| {
+        let (sin, cos) = (20.0 + 40.0 * at.x + 120.0 * at.y).to_radians().sin_cos();
+        DVec3::new(RADIUS * cos, RADIUS * sin, 0.1 + 0.8 * at.y)
+    };
+    let block = |count| Block {
+        cell: Cell::Triangle,
+        entity: EntityKey::new(2, 1),
+        physical_tags: vec![],
+        tags: vec![1],
+        nodes: (0..count).map(|n| NodeId::new(n).unwrap()).collect(),
+    };
+    let mesh = |order: Order| {
+        let unit = lattice(Cell::Triangle, order).iter().map(|at| DVec3::from(at.map(f64::from)) / order.get() as f64);
+        let points: Vec<DVec3> = unit.map(place).collect();
+        let (node_entities, node_tags) = (vec![None; points.len()], (1..=points.len() as u64).collect());
+        Mesh { order, node_tags, node_entities, blocks: vec![block(points.len())], points, ..Mesh::default() }
+    };
+    let (linear, mesh) = (mesh(Order::LINEAR), mesh(order));
+    let boundary = Boundary::new(&linear);
+    let on = |surfaces| Association { faces: vec![Host::Surface(0)], surfaces, ..Association::default() };
+    let walls = |association: &Association| Proof::of(&mesh, &linear.points, &boundary, association).walls;
+    assert_eq!(walls(&on(vec![])).folded(), 1, "it leans too little against its linear face");
+    let walls = walls(&on(vec![surface("cylinder_bl", 3)]));
+    assert!(walls.hold(), "{walls:?}");
 }

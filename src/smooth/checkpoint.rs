@@ -9,7 +9,7 @@ use std::io::{self, Read, Write};
 use glam::DVec3;
 
 use super::Summary;
-use super::stages::{Pace, Stage};
+use super::pace::{Pace, Stage};
 
 /// All that smoothing needs to go on as if it had not been interrupted.
 #[derive(Clone, Debug, PartialEq)]

@@ -10,6 +10,7 @@ mod engine;
 mod gradient;
 mod kernel;
 mod objective;
+mod pace;
 mod patch;
 mod problem;
 mod settings;

@@ -21,6 +21,7 @@ use super::engine::Engine;
 use super::gradient::climb;
 use super::kernel::Weights;
 use super::objective::Objective;
+use super::pace::{MOST_RINGS, PATIENCE, Pace, RINGS, Stage};
 use super::patch::Patch;
 use super::problem::Kernels;
 use super::{Checkpoint, Constraint, ElementCost, Image, Problem, Progress, Settings, Smoothed, Summary, Watch};
@@ -30,12 +31,6 @@ use crate::quality;
 const BLIND: f64 = 0.01;
 /// A descent ends at a sweep that gains less than this share of the objective.
 const GAIN: f64 = 1e-4;
-/// A stage ends when two rounds in a row raise the score of the smallest costs by less.
-const PROGRESS: f64 = 2e-3;
-/// Rings of neighbours that are activated around the elements below the threshold.
-const RINGS: usize = 2;
-/// Most rings around elements below [`LOW`] that do not come out of it.
-const MOST_RINGS: usize = 8;
 /// Weight of the square of a sample's term: how much the worst samples count.
 const EMPHASIS: f64 = 20.0;
 /// Below this cost an element is as good as inverted: the elements below it are worked on first, alone with their
@@ -46,8 +41,6 @@ const LOW: f64 = 0.3;
 /// Where the whole patch gains no more, the elements within this of the worst are worked on alone, with their surroundings:
 /// wing_sharp at scale 0.4, P4, goes on from C_JAC 0.42 to 0.50 by it, weeble_hybrid P3 from 0.67 to 0.80.
 const FOCUS: f64 = 0.1;
-/// Idle rounds after which a focused stage ends.
-const PATIENCE: usize = 4;
 /// Rings of neighbours around them.
 const FOCUS_RINGS: usize = 4;
 /// How much farther than they are meant to the nodes on walls may slide, step by step, where focused stages leave `C_JAC` below
@@ -98,35 +91,6 @@ pub fn smooth(
     run.stages(x);
     run.go_back(x);
     Smoothed { sweeps: run.sweeps, stopped: run.stopped, costs: run.costs, start, end: run.best.summary }
-}
-
-/// What a stage works on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Stage {
-    /// Shape alone.
-    Shape,
-    /// Shape and Jacobian.
-    Full,
-}
-
-/// Where a stage stands between two rounds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Pace {
-    pub(crate) stage: Stage,
-    /// Rounds in a row that gained next to nothing.
-    pub(crate) idle: usize,
-    /// Rings around elements below [`LOW`].
-    pub(crate) low_rings: usize,
-    /// Whether the worst elements are worked on alone.
-    pub(crate) focused: bool,
-    /// Most sweeps of the next round.
-    pub(crate) round: usize,
-}
-
-impl Pace {
-    fn new(stage: Stage, engine: Engine) -> Pace {
-        Pace { stage, idle: 0, low_rings: RINGS, focused: false, round: *engine.rounds().start() }
-    }
 }
 
 /// Survey densities in multiples of `p`: doubled from 1 to that of the closing survey.
@@ -275,8 +239,7 @@ impl Run<'_, '_> {
         (0..active.len()).filter(|&e| active[e]).collect()
     }
 
-    /// One round: a survey dense enough, a descent, and what it gained. Where that was next to nothing and the descent had
-    /// not come to its end, the next round is longer.
+    /// One round: a survey dense enough, a descent, and what it gained.
     fn round(&mut self, active: &[usize], x: &mut [DVec3]) {
         let (before, first) = (self.standing(), self.sweeps);
         self.densify(active, x);
@@ -284,14 +247,7 @@ impl Run<'_, '_> {
         self.best.note(&patch, x, &self.costs);
         self.descend(&patch, x);
         self.survey(&patch.elements, x);
-        let cut_off = self.sweeps - first == self.pace.round;
-        if self.standing() - before >= PROGRESS {
-            self.pace.idle = 0;
-        } else if cut_off && self.pace.round < *self.settings.engine.rounds().end() {
-            self.pace.round *= 2;
-        } else {
-            self.pace.idle += 1;
-        }
+        self.pace.after(self.standing() - before, self.sweeps - first, self.settings.engine);
     }
 
     /// Offers the state between two rounds to be kept; after one that was cut short there is no going on.
@@ -324,12 +280,7 @@ impl Run<'_, '_> {
         }
         let densest = (self.surveys.len() - 1) as u8;
         self.density = checkpoint.density.iter().map(|&density| density.min(densest)).collect();
-        // Numbers beyond what a run reaches come from a forged file: they must not cost more than the work does.
-        let Pace { idle, low_rings, round, .. } = checkpoint.pace;
-        let (idle, low_rings) = (idle.min(PATIENCE), low_rings.clamp(RINGS, MOST_RINGS));
-        let rounds = self.settings.engine.rounds();
-        let round = round.clamp(*rounds.start(), *rounds.end());
-        (self.pace, self.sweeps) = (Pace { idle, low_rings, round, ..checkpoint.pace }, checkpoint.sweeps);
+        (self.pace, self.sweeps) = (checkpoint.pace.limited(self.settings.engine), checkpoint.sweeps);
     }
 
     /// Back to the best state so far.
@@ -443,12 +394,5 @@ impl Run<'_, '_> {
             at: middle / nodes.len() as f64,
             inverted: self.costs.iter().filter(|c| stage.cost(c) <= 0.0).count(),
         }
-    }
-}
-
-impl Stage {
-    /// The cost that the stage works on.
-    fn cost(self, cost: &ElementCost) -> f64 {
-        if self == Stage::Shape { cost.c_wcn } else { cost.worst() }
     }
 }

@@ -1,0 +1,68 @@
+//! Where a stage stands between two rounds, and what the next one is to be.
+
+use super::ElementCost;
+use super::engine::Engine;
+
+/// A round gains something where it raises the score of the smallest costs by at least this.
+const PROGRESS: f64 = 2e-3;
+/// Rings of neighbours that are activated around the elements below the threshold.
+pub(super) const RINGS: usize = 2;
+/// Most rings around elements as good as inverted that do not come out of it.
+pub(super) const MOST_RINGS: usize = 8;
+/// Idle rounds after which a focused stage ends.
+pub(super) const PATIENCE: usize = 4;
+
+/// What a stage works on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stage {
+    /// Shape alone.
+    Shape,
+    /// Shape and Jacobian.
+    Full,
+}
+
+/// Where a stage stands between two rounds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Pace {
+    pub(crate) stage: Stage,
+    /// Rounds in a row that gained next to nothing.
+    pub(crate) idle: usize,
+    /// Rings around elements as good as inverted.
+    pub(crate) low_rings: usize,
+    /// Whether the worst elements are worked on alone.
+    pub(crate) focused: bool,
+    /// Most sweeps of the next round.
+    pub(crate) round: usize,
+}
+
+impl Stage {
+    /// The cost that the stage works on.
+    pub(super) fn cost(self, cost: &ElementCost) -> f64 {
+        if self == Stage::Shape { cost.c_wcn } else { cost.worst() }
+    }
+}
+
+impl Pace {
+    /// That of a stage that begins.
+    pub(super) fn new(stage: Stage, engine: Engine) -> Pace {
+        Pace { stage, idle: 0, low_rings: RINGS, focused: false, round: *engine.rounds().start() }
+    }
+
+    /// After a round: where it gained next to nothing and its descent was cut off, the next one is longer.
+    pub(super) fn after(&mut self, gained: f64, sweeps: usize, engine: Engine) {
+        if gained >= PROGRESS {
+            self.idle = 0;
+        } else if sweeps == self.round && self.round < *engine.rounds().end() {
+            self.round *= 2;
+        } else {
+            self.idle += 1;
+        }
+    }
+
+    /// Without numbers beyond what a run reaches: they come from a forged file, and must not cost more than the work does.
+    pub(super) fn limited(self, engine: Engine) -> Pace {
+        let (idle, low_rings) = (self.idle.min(PATIENCE), self.low_rings.clamp(RINGS, MOST_RINGS));
+        let rounds = engine.rounds();
+        Pace { idle, low_rings, round: self.round.clamp(*rounds.start(), *rounds.end()), ..self }
+    }
+}
