@@ -36,8 +36,8 @@
 //!    them is nearer to the CAD.
 //! 5. [`perturb`] carries the wall's displacement into planar patches and into the volume.
 //! 6. [`smooth`] lowers an objective made of the paper's costs ([`quality`]), stage by stage, on the active part of the mesh.
-//! 7. [`certify`] proves every element valid and every face on the CAD free of folds ([`proof`]), or the ladder (`src/ladder.rs`)
-//!    is climbed down, to [`retreat`], until it can.
+//! 7. [`certify`] proves every element valid and every face on the CAD free of folds ([`proof`]), or the ladder (`src/ladder`)
+//!    is climbed down, to [`retreat`], until it can, and up again as far as the proof holds.
 //! 8. [`report`] tells what came out; [`formats`] writes it.
 //!
 //! Steps 3 to 6 are taken at P2 first and then at each order up to the one asked for, from where the one below ended

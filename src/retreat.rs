@@ -31,14 +31,15 @@ pub struct Fallback {
 pub struct GivenUp {
     /// Its index in [`Boundary::faces`].
     pub face: usize,
-    /// The share of its displacement from the fallback that is left, 0 to 1: the least of its nodes.
+    /// The share of its displacement from the fallback that it has, 0 to 1: the least of its nodes.
     pub share: f64,
     /// Order of the fallback.
     pub order: Order,
 }
 
 /// Takes displacements back until the proof holds, or nothing is left to take back; `linear` are the places of the linear nodes
-/// before they were moved, `proof` that of the mesh as it is. Returns the faces given up and the proof.
+/// before they were moved, `proof` that of the mesh as it is. Returns the share of its displacement from the fallback that each
+/// node keeps, and the proof.
 #[must_use]
 pub fn retreat(
     mesh: &mut Mesh,
@@ -48,12 +49,12 @@ pub fn retreat(
     association: &Association,
     ties: &Ties,
     proof: Proof,
-) -> (Vec<GivenUp>, Proof) {
-    if proof.holds() {
-        return (Vec::new(), proof);
-    }
+) -> (Vec<f64>, Proof) {
     let curved = mesh.points.clone();
     let mut shares = vec![1.0; curved.len()];
+    if proof.holds() {
+        return (shares, proof);
+    }
     let mut failing = proof.failing(mesh, boundary);
     while !failing.is_empty() {
         let touched = take_back(mesh, ties, &failing, &mut shares);
@@ -73,7 +74,7 @@ pub fn retreat(
         failing.extend(behind(mesh, boundary, &walls(mesh, linear, boundary, association, moved)));
     }
     let proof = Proof::of(mesh, linear, boundary, association);
-    (given_up(mesh, boundary, association, &shares, fallback.order), proof)
+    (shares, proof)
 }
 
 /// Halves the shares around failing elements; returns all elements that have a node with a changed share, none where all shares
@@ -94,8 +95,9 @@ fn take_back(mesh: &Mesh, ties: &Ties, failing: &[usize], shares: &mut [f64]) ->
     (0..elements.len()).filter(|&e| near(&changed, e)).collect()
 }
 
-/// The faces tied to the CAD that have a node with less than its whole displacement.
-pub(crate) fn given_up(
+/// The faces tied to the CAD that have a node with less than its whole displacement from a fallback of this order.
+#[must_use]
+pub fn given_up(
     mesh: &Mesh,
     boundary: &Boundary,
     association: &Association,

@@ -13,7 +13,7 @@ use sagitta::formats;
 use sagitta::mesh::{Block, EntityKey, Mesh, NodeId};
 use sagitta::periodic::Ties;
 use sagitta::proof::Proof;
-use sagitta::retreat::{Fallback, retreat};
+use sagitta::retreat::{Fallback, given_up, retreat};
 
 /// A face of a fixture's CAD, by its index.
 fn surface(case: &str, face: usize) -> Surface {
@@ -40,9 +40,10 @@ fn displacements_are_taken_back_until_every_element_is_valid() {
     let first = Proof::of(&mesh, &straight[..linear_nodes], &boundary, &association);
     assert!(!first.certificate.holds(), "the case must be broken to begin with");
     let fallback = Fallback { order: Order::LINEAR, places: straight.clone() };
-    let (given_up, proof) =
+    let (shares, proof) =
         retreat(&mut mesh, &fallback, &straight[..linear_nodes], &boundary, &association, &Ties::default(), first);
 
+    let given_up = given_up(&mesh, &boundary, &association, &shares, Order::LINEAR);
     assert!(proof.holds());
     assert!(certify::mesh(&mesh, None, &Settings::default()).holds(), "the mesh that is handed back is the valid one");
     assert!(!given_up.is_empty() && given_up.iter().all(|g| g.share < 1.0));
@@ -60,7 +61,7 @@ fn a_valid_mesh_is_left_alone() {
     let boundary = Boundary::new(&linear);
     let association = Association { faces: vec![Host::Surface(0); boundary.faces.len()], ..Association::default() };
     let proof = Proof::of(&mesh, &straight[..elevated.linear_nodes], &boundary, &association);
-    let (given_up, _) = retreat(
+    let (shares, _) = retreat(
         &mut mesh,
         &Fallback { order: Order::LINEAR, places: straight.clone() },
         &straight[..elevated.linear_nodes],
@@ -69,7 +70,7 @@ fn a_valid_mesh_is_left_alone() {
         &Ties::default(),
         proof,
     );
-    assert!(given_up.is_empty() && mesh.points == straight);
+    assert!(shares.iter().all(|&share| share == 1.0) && mesh.points == straight);
 }
 
 #[test]
@@ -147,8 +148,9 @@ fn a_folded_wall_face_of_a_valid_element_is_taken_back() {
     assert!(first.certificate.holds() && first.walls.folded() == 1, "the face alone must be broken: {first:?}");
 
     let fallback = Fallback { order: Order::LINEAR, places: straight.clone() };
-    let (given_up, proof) =
+    let (shares, proof) =
         retreat(&mut mesh, &fallback, &linear.points, &boundary, &association, &Ties::default(), first);
+    let given_up = given_up(&mesh, &boundary, &association, &shares, Order::LINEAR);
     assert!(proof.holds(), "{proof:?}");
     assert!(given_up.len() == 1 && given_up[0].face == 0, "{given_up:?}");
     assert!((0.25..1.0).contains(&given_up[0].share), "no more than it must: {given_up:?}");
