@@ -25,6 +25,7 @@ use crate::checkpoint::{CheckpointError, Found};
 use crate::element::{Cell, Order, basis};
 use crate::elevate::{Elevated, elevate};
 use crate::fit::fit;
+use crate::ladder::Ladder;
 use crate::layers::leave_straight_beyond;
 use crate::mesh::{Mesh, NodeId};
 use crate::periodic::Ties;
@@ -99,7 +100,7 @@ impl From<Level> for Below {
     }
 }
 
-/// The mesh at the highest order below at which no element is inverted.
+/// The mesh at the highest order below that is valid on the CAD.
 pub(crate) enum Fall<'a> {
     /// As it came out.
     Known(Option<Below>),
@@ -109,13 +110,14 @@ pub(crate) enum Fall<'a> {
 
 impl Fall<'_> {
     /// That mesh; where it was skipped, it is made now, unless `watch` ends that.
-    pub(crate) fn below(self, watch: &mut dyn FnMut(Progress) -> bool) -> Option<Below> {
+    pub(crate) fn below(&mut self, watch: &mut dyn FnMut(Progress) -> bool) -> Option<&Below> {
+        if let Fall::Skipped(ascent) = self {
+            let order = ascent.job.order;
+            *self = Fall::Known(ascent.remade(order, &mut Silent(watch)).ok().flatten());
+        }
         match self {
-            Fall::Known(below) => below,
-            Fall::Skipped(mut ascent) => {
-                let order = ascent.job.order;
-                ascent.remade(order, &mut Silent(watch)).ok()?
-            }
+            Fall::Known(below) => below.as_ref(),
+            Fall::Skipped(_) => None,
         }
     }
 }
@@ -180,13 +182,22 @@ impl<'a> Ascent<'a> {
                 skipped = true;
                 continue;
             }
-            let level = self.level(ready, below.as_ref(), clock)?;
+            let mut level = self.level(ready, below.as_ref(), clock)?;
+            let mut valid = level.smoothed.end.inverted == 0;
+            if !valid && !level.smoothed.stopped {
+                if std::mem::take(&mut skipped) {
+                    below = self.remade(order, &mut Silent(&mut |progress| clock.observer.progress(&progress)))?;
+                }
+                let mut fall = Fall::Known(below.take());
+                valid = self.mend(&mut level, &mut fall, clock);
+                if let Fall::Known(back) = fall {
+                    below = back;
+                }
+            }
             let Smoothed { sweeps, stopped, start, end, .. } = level.smoothed;
             lower_orders.push(LowerOrder { order, sweeps, stopped, start, end });
-            if end.inverted == 0 {
+            if valid {
                 below = Some(level.into());
-            } else if std::mem::take(&mut skipped) && !stopped {
-                below = self.remade(order, &mut Silent(&mut |progress| clock.observer.progress(&progress)))?;
             }
             if stopped {
                 break;
@@ -199,6 +210,15 @@ impl<'a> Ascent<'a> {
     fn remade(&mut self, end: Order, silent: &mut Silent) -> Result<Option<Below>, PipelineError> {
         let (below, lower_orders) = self.lower(end, &mut Clock::new(silent))?;
         Ok(below.filter(|_| lower_orders.iter().all(|lower| !lower.stopped)))
+    }
+
+    /// Takes a level that is inverted through the ladder; whether it came out on the CAD, and proven.
+    fn mend(&self, level: &mut Level, below: &mut Fall, clock: &mut Clock) -> bool {
+        let (places, ready) = (std::mem::take(&mut level.places), &mut level.ready);
+        let ladder = Ladder::new(self.job, self.boundary, self.association, ready, below);
+        let climbed = ladder.climb(places, &mut level.smoothed, |progress| clock.observer.progress(&progress));
+        level.places = std::mem::replace(&mut ready.elevated.mesh.points, climbed.straight);
+        climbed.proof.holds() && climbed.given_up.is_empty()
     }
 
     /// Elevates and projects.

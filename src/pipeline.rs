@@ -264,23 +264,15 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
     linear.periodic.extend(tied.claims.periodic.into_iter().filter(|pair| !known.contains(&pair.slave)));
 
     let ascent = Ascent::new(job, linear, &boundary, &association)?;
-    let Climb { level, below, lower_orders } = ascent.climb(&mut clock)?;
-    let Level { ready: Ready { mut elevated, ties, mut projected, notes }, places, mut smoothed } = level;
+    let Climb { level, mut below, lower_orders } = ascent.climb(&mut clock)?;
+    let Level { mut ready, places, mut smoothed } = level;
 
     clock.step(Step::Certify);
-    let ladder = Ladder {
-        elevated: &mut elevated,
-        boundary: &boundary,
-        association: &association,
-        ties: &ties,
-        projected: &mut projected,
-        settings: &job.smoothing,
-        freeze_walls: job.freeze_walls,
-        freeze_linear: job.freeze_linear,
-        below: Some(below),
-    };
+    let ladder = Ladder::new(job, &boundary, &association, &mut ready, &mut below);
     let Climbed { given_up, proof: Proof { certificate, walls }, straight } =
         ladder.climb(places, &mut smoothed, |progress| clock.observer.progress(&progress));
+    drop(below);
+    let Ready { elevated, projected, notes, .. } = ready;
     association.notes.extend(notes);
     let Elevated { mesh, linear_nodes, .. } = elevated;
     Ok(Curved {

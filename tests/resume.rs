@@ -7,7 +7,10 @@ mod common;
 use std::fs;
 use std::path::Path;
 
-use common::{Outcome, fixture, json, root, sagitta};
+use common::{Outcome, fixture, json, number, root, sagitta};
+use sagitta::element::Order;
+use sagitta::pipeline::{self, Job, Observer, Step};
+use sagitta::smooth::Progress;
 
 /// The weeble, with work enough for several rounds.
 fn curve(out: &Path, order: &str, max_sweeps: &str, more: &[&str]) -> Outcome {
@@ -60,31 +63,58 @@ fn order_by_order_too() {
     assert_refused(&direct, &high, "belongs to other work");
 }
 
-/// What cannot be valid falls back to the mesh of the order below, also where that was not made again.
+/// Ends the work at P4.
+struct ImpatientAtP4(Order);
+
+impl Observer for ImpatientAtP4 {
+    fn order(&mut self, order: Order) {
+        self.0 = order;
+    }
+
+    fn step(&mut self, _: Step) {}
+
+    fn progress(&mut self, _: &Progress) -> bool {
+        self.0.get() < 4
+    }
+}
+
+/// What is not valid goes back towards the mesh of the order below, also where that was not made again.
 #[test]
 fn falls_back_as_without_interruption() {
+    const SWEEPS: usize = 30;
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str| folder.path().join(name);
     let [whole, second, report, state] = ["whole.msh", "second.msh", "report.json", "state"].map(file);
     let case = |end: &str| root().join(format!("fixtures/torus_coarse/torus.{end}"));
     let [mesh, cad, linkage] = ["msh", "step", "meshlink.xml"].map(case);
-    let curve = |out: &Path, order: &str, more: &[&str]| {
-        let files = args!["curve", mesh, "--cad", cad, "--linkage", linkage, "-o", out];
-        let options = args!["--order", order, "--max-sweeps", "30", "--quiet", "--report", report];
-        sagitta(files.into_iter().chain(options).chain(more.iter().map(Into::into))).expect(3);
-        json(&report)["smoothing"]["lower_orders"].clone()
+    let curve_p3 = |out: &Path, more: &[&str]| {
+        let files = args!["curve", mesh, "--cad", cad, "--linkage", linkage, "-o", out, "--report", report];
+        let options = args!["--order", "3", "--max-sweeps", SWEEPS.to_string(), "--quiet"];
+        sagitta(files.into_iter().chain(options).chain(more.iter().map(Into::into))).expect(0);
+        json(&report)["smoothing"].clone()
     };
     let bytes = |path: &Path| fs::read(path).unwrap();
-    curve(&whole, "3", &["--checkpoint", text(&state)]);
-    assert_eq!(curve(&second, "3", &["--resume", text(&state)]), serde_json::json!([]), "the checkpoint is of P3");
+    let smoothing = curve_p3(&whole, &["--checkpoint", text(&state)]);
+    assert!(number(&smoothing, "/sweeps") > SWEEPS as f64, "it did not go back: {smoothing}");
+    let smoothing = curve_p3(&second, &["--resume", text(&state)]);
+    assert_eq!(smoothing["lower_orders"], serde_json::json!([]), "the checkpoint is of P3");
     assert!(bytes(&second) == bytes(&whole), "other bytes than without interruption");
 
-    // P3 comes out inverted, so that P4 begins at P2, which the run that goes on from P3 has not made.
-    let lower = curve(&whole, "4", &[]);
-    let inverted = |order: usize| lower[order]["end"]["inverted"].as_u64().unwrap();
-    assert!(inverted(0) == 0 && inverted(1) > 0, "{lower}");
-    curve(&second, "4", &["--resume", text(&state)]);
-    assert!(bytes(&second) == bytes(&whole), "P4: other bytes than without interruption");
+    // On the way to P4, P3 comes out inverted and goes back towards P2, which the run that goes on from P3 has not made.
+    let curve_p4 = |resume: Option<&Path>| {
+        let mut job = Job::new(mesh.clone(), cad.clone(), Some(linkage.clone()), Order::new(4).unwrap());
+        job.reading.reader = env!("CARGO_BIN_EXE_sagitta").into();
+        job.smoothing.max_sweeps = SWEEPS;
+        job.resume = resume.map(Into::into);
+        pipeline::curve(&job, &mut ImpatientAtP4(Order::LINEAR)).unwrap()
+    };
+    let (whole, second) = (curve_p4(None), curve_p4(Some(&state)));
+    for (curved, orders) in [(&whole, 2), (&second, 1)] {
+        let lower = &curved.lower_orders;
+        let p3 = lower.last().unwrap();
+        assert!(lower.len() == orders && p3.sweeps > SWEEPS && p3.end.inverted == 0, "{lower:?}");
+    }
+    assert!(whole.mesh.points == second.mesh.points, "P4: other places than without interruption");
 }
 
 #[test]

@@ -21,7 +21,7 @@ const MOST: usize = 48;
 /// Costs good enough to take the next step.
 const ENOUGH: f64 = 0.3;
 
-impl Ladder<'_> {
+impl Ladder<'_, '_> {
     /// Takes the walls forward as far as the mesh stays proven.
     pub(super) fn advance(&mut self, now: &mut Standing, watch: &mut impl FnMut(Progress) -> bool) {
         if !now.proof.holds() || now.way.is_done() {

@@ -20,12 +20,13 @@ mod way;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::ascent::Fall;
+use crate::ascent::{Fall, Ready};
 use crate::associate::{Association, Boundary, Host};
 use crate::element::Order;
 use crate::elevate::Elevated;
 use crate::periodic::Ties;
 use crate::perturb::perturb;
+use crate::pipeline::Job;
 use crate::project::{CadConstraint, Projected};
 use crate::proof::Proof;
 use crate::retreat::{Fallback, GivenUp, given_up, retreat};
@@ -39,25 +40,18 @@ const ROUNDS: usize = 4;
 const SWEEPS: usize = 60;
 
 /// The mesh on its way to a proof.
-pub(crate) struct Ladder<'a> {
+pub(crate) struct Ladder<'a, 'f> {
     /// The straight mesh of order p.
-    pub elevated: &'a mut Elevated,
-    /// Its boundary.
-    pub boundary: &'a Boundary,
-    /// What lies on which CAD group.
-    pub association: &'a Association,
-    /// Periodic pairs.
-    pub ties: &'a Ties,
-    /// Hosts and displacements of the boundary nodes.
-    pub projected: &'a mut Projected,
-    /// The smoother's settings.
-    pub settings: &'a smooth::Settings,
-    /// Hold nodes on curved walls.
-    pub freeze_walls: bool,
-    /// Hold linear nodes.
-    pub freeze_linear: bool,
+    elevated: &'a mut Elevated,
+    boundary: &'a Boundary,
+    association: &'a Association,
+    ties: &'a Ties,
+    projected: &'a mut Projected,
+    settings: &'a smooth::Settings,
+    freeze_walls: bool,
+    freeze_linear: bool,
     /// The curved mesh of the order below.
-    pub below: Option<Fall<'a>>,
+    below: &'a mut Fall<'f>,
 }
 
 /// What the ladder led to.
@@ -79,7 +73,21 @@ struct Standing {
     smoothed: Smoothed,
 }
 
-impl Ladder<'_> {
+impl<'a, 'f> Ladder<'a, 'f> {
+    /// For the mesh of one order of a job.
+    pub(crate) fn new(
+        job: &'a Job,
+        boundary: &'a Boundary,
+        association: &'a Association,
+        ready: &'a mut Ready,
+        below: &'a mut Fall<'f>,
+    ) -> Ladder<'a, 'f> {
+        let Ready { elevated, ties, projected, .. } = ready;
+        let Job { smoothing: settings, freeze_walls, freeze_linear, .. } = job;
+        let (freeze_walls, freeze_linear) = (*freeze_walls, *freeze_linear);
+        Ladder { elevated, boundary, association, ties, projected, settings, freeze_walls, freeze_linear, below }
+    }
+
     /// Makes the smoothed places valid, and leaves them in `elevated.mesh.points`.
     pub(crate) fn climb(
         mut self,
@@ -170,12 +178,13 @@ impl Ladder<'_> {
     /// The curved mesh of the order below where it is proven valid, otherwise the straight one.
     fn fallback(&mut self, watch: &mut dyn FnMut(Progress) -> bool) -> Fallback {
         let straight = self.elevated.mesh.points.clone();
-        if let Some(below) = self.below.take().and_then(|fall| fall.below(watch)) {
+        if let Some(below) = self.below.below(watch) {
             let mut places = below.raised(&self.elevated.mesh);
             places.iter_mut().zip(&straight).for_each(|(place, straight)| *place += *straight);
+            let order = below.order;
             self.ties.apply(&mut places);
             if self.proof(&mut places).holds() {
-                return Fallback { order: below.order, places };
+                return Fallback { order, places };
             }
         }
         Fallback { order: Order::LINEAR, places: straight }
