@@ -54,6 +54,9 @@ pub(super) trait Sink: Send {
             drop(sink);
             Ok(bytes)
         };
+        if count <= TASK {
+            return self.encoded(&encode(0..count)?); // a mesh from elsewhere has a block of nodes for every line of its grid
+        }
         let mut ready: Vec<Vec<u8>> = Vec::new();
         for first in (0..count).step_by(BATCH) {
             let end = count.min(first + BATCH);
