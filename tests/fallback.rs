@@ -64,6 +64,10 @@ fn where_no_time_is_left_faces_keep_their_curve_of_p2() {
         job.smoothing.max_sweeps = 20;
         let curved = curve(&job, &mut Impatient { order: Order::LINEAR, patience }).unwrap();
         assert!(curved.smoothed.stopped && curved.certificate.holds(), "{patience}");
+        assert!(
+            certify::mesh(&curved.mesh, None, &Settings::default()).holds(),
+            "{patience}: not the mesh that was proven"
+        );
         let given_up = curved.given_up;
         assert!(!given_up.is_empty() && given_up.iter().all(|face| face.order.get() == 2), "{patience}: {given_up:?}");
         given_up.iter().map(|face| face.share).fold(1.0, f64::min)

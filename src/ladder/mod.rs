@@ -225,17 +225,13 @@ impl<'a, 'f> Ladder<'a, 'f> {
         now.proof = proof;
         let back: Vec<usize> = (0..shares.len()).filter(|&n| shares[n] < 1.0 && self.on_wall(n)).collect();
         back.iter().for_each(|&n| now.way.take_back(n, shares[n], curved[n]));
-        self.follow(&back, None, now);
+        self.displace(&back, &now.way); // the places stay those that were proven, to the bit
     }
 
     /// Puts wall nodes where they are on their way; the others go with them from where the walls `carried` them before, or stay.
     fn follow(&mut self, nodes: &[usize], carried: Option<Vec<DVec3>>, now: &mut Standing) {
-        for &n in nodes {
-            now.places[n] = now.way.place(n);
-            if let Some(displacement) = self.projected.displacement.get_mut(n) {
-                *displacement = now.way.displacement(n, self.elevated.mesh.points[n]);
-            }
-        }
+        nodes.iter().for_each(|&n| now.places[n] = now.way.place(n));
+        self.displace(nodes, &now.way);
         if let Some(before) = carried {
             let after = self.carried();
             for n in (0..after.len()).filter(|&n| !self.on_wall(n)) {
@@ -243,6 +239,15 @@ impl<'a, 'f> Ladder<'a, 'f> {
             }
         }
         self.ties.apply(&mut now.places);
+    }
+
+    /// Takes the displacements of nodes from their way.
+    fn displace(&mut self, nodes: &[usize], way: &Way) {
+        for &n in nodes {
+            if let Some(displacement) = self.projected.displacement.get_mut(n) {
+                *displacement = way.displacement(n, self.elevated.mesh.points[n]);
+            }
+        }
     }
 
     /// Places of all nodes as the walls' displacement carries them.
