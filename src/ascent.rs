@@ -15,6 +15,10 @@
 //! | wing_blunt 0.4 P4 | 0.880 / 0.573, 15.6 | 0.914 / 0.719, 10.1 |
 //! | nozzle 0.4 P4 | 0.959 / 0.812, 15.0 | 0.954 / 0.805, 6.1 |
 //!
+//! An order that comes out inverted goes through the ladder ([`crate::ladder`]); the next one begins there if it ends on the CAD, proven,
+//! and else at the last order that did. With 30 sweeps an order the torus at scale 0.5 comes out inverted at P3; P4 then ended with 56
+//! faces off the CAD when it began at P2, and on it with C_JAC 0.25 when it begins at what the ladder made of P3.
+//!
 //! The paper's engine begins at the order itself, as the paper has it, and so does `--direct`.
 
 use glam::DVec3;
