@@ -7,10 +7,10 @@ mod common;
 use std::fs;
 use std::path::Path;
 
+use common::impatient::Impatient;
 use common::{Outcome, fixture, json, number, root, sagitta};
 use sagitta::element::Order;
-use sagitta::pipeline::{self, Job, Observer, Step};
-use sagitta::smooth::Progress;
+use sagitta::pipeline::{self, Job};
 
 /// The weeble, with work enough for several rounds.
 fn curve(out: &Path, order: &str, max_sweeps: &str, more: &[&str]) -> Outcome {
@@ -63,21 +63,6 @@ fn order_by_order_too() {
     assert_refused(&direct, &high, "belongs to other work");
 }
 
-/// Ends the work at P4.
-struct ImpatientAtP4(Order);
-
-impl Observer for ImpatientAtP4 {
-    fn order(&mut self, order: Order) {
-        self.0 = order;
-    }
-
-    fn step(&mut self, _: Step) {}
-
-    fn progress(&mut self, _: &Progress) -> bool {
-        self.0.get() < 4
-    }
-}
-
 /// What is not valid goes back towards the mesh of the order below, also where that was not made again.
 #[test]
 fn falls_back_as_without_interruption() {
@@ -106,7 +91,7 @@ fn falls_back_as_without_interruption() {
         job.reading.reader = env!("CARGO_BIN_EXE_sagitta").into();
         job.smoothing.max_sweeps = SWEEPS;
         job.resume = resume.map(Into::into);
-        pipeline::curve(&job, &mut ImpatientAtP4(Order::LINEAR)).unwrap()
+        pipeline::curve(&job, &mut Impatient::new(4, 1)).unwrap()
     };
     let (whole, second) = (curve_p4(None), curve_p4(Some(&state)));
     for (curved, orders) in [(&whole, 2), (&second, 1)] {

@@ -1,15 +1,17 @@
 //! Smoothing that is ended early leaves a valid mesh, and says why.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod common;
 
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use common::impatient::Impatient;
 use sagitta::certify::{self, Settings};
 use sagitta::element::Order;
 use sagitta::formats;
-use sagitta::pipeline::{self, Job, Observer, Step};
-use sagitta::smooth::Progress;
+use sagitta::pipeline::{self, Job};
 
 fn curve(out: &Path, more: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_sagitta"));
@@ -51,29 +53,12 @@ fn an_interrupt_ends_smoothing() {
     assert_valid(&out);
 }
 
-/// Ends the smoothing at P2, and lets it go on at higher orders.
-struct ImpatientAtP2 {
-    order: Order,
-}
-
-impl Observer for ImpatientAtP2 {
-    fn order(&mut self, order: Order) {
-        self.order = order;
-    }
-
-    fn step(&mut self, _: Step) {}
-
-    fn progress(&mut self, _: &Progress) -> bool {
-        self.order.get() != 2
-    }
-}
-
 #[test]
 fn a_run_that_was_ended_at_a_lower_order_counts_as_ended() {
     let file = |end: &str| Path::new("fixtures/sphere_shell").join(format!("sphere_shell.{end}"));
     let mut job = Job::new(file("msh"), file("step"), None, Order::new(3).unwrap());
     job.reading.reader = env!("CARGO_BIN_EXE_sagitta").into();
-    let curved = pipeline::curve(&job, &mut ImpatientAtP2 { order: Order::LINEAR }).unwrap();
+    let curved = pipeline::curve(&job, &mut Impatient::new(2, 1)).unwrap();
     assert!(curved.lower_orders[0].stopped, "{:?}", curved.lower_orders);
     assert!(curved.smoothed.stopped && curved.certificate.holds());
 }

@@ -1,8 +1,8 @@
 //! Forward again, from a mesh that is proven valid: what was taken back goes towards the CAD step by step, and is smoothed after each.
 //!
 //! A step begins at a valid mesh and moves its walls a little, so few elements are inverted after it, and by little: the smoother need
-//! not find its way from far. The torus at scale 0.5, P4, does not come out of one element at `J = -12 J_c`; from half way between
-//! P3 and P4 it goes to the CAD in steps of an eighth.
+//! not find its way from far. The torus at scale 0.5, P4, does not come out of one element at `J = -12 J_c` by smoothing alone; from
+//! part of the way between P3 and P4 it goes to the CAD.
 //!
 //! A step that is not proven valid is undone, and the next one is half as long. Where the shortest is undone too, the walls around the
 //! elements that failed stay, and the others go on.

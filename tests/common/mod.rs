@@ -13,6 +13,7 @@ macro_rules! args {
     ($($argument:expr),* $(,)?) => { [$(std::ffi::OsString::from(&$argument)),*] };
 }
 
+pub mod impatient;
 pub mod input;
 pub mod linkage;
 pub mod ugrid;
