@@ -46,25 +46,14 @@
 //! [`element`] is the one place that knows cells: their lattices, bases, sub-elements, sample tables and file orders.
 #![forbid(unsafe_code)]
 
-mod ascent;
 pub mod associate;
 pub mod certify;
-pub mod checkpoint;
 pub mod cli;
+pub mod curve;
 pub mod element;
-pub mod elevate;
-pub mod fit;
 pub mod formats;
-mod ladder;
-pub mod layers;
 pub mod mesh;
-pub mod periodic;
-pub mod perturb;
-pub mod pipeline;
-pub mod project;
-pub mod proof;
 pub mod quality;
 pub mod report;
-pub mod retreat;
 pub mod smooth;
 pub mod validate;

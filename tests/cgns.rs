@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use sagitta::element::{Cell, Order};
-use sagitta::elevate::elevate;
 use sagitta::formats::{self, ReadOptions, WriteOptions};
+use sagitta::mesh::elevate::elevate;
 use sagitta::mesh::{EntityKey, Mesh, NodeId};
 
 fn read(path: &Path) -> Mesh {

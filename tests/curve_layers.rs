@@ -10,9 +10,9 @@ use common::{fixture, json, sagitta};
 use glam::DVec3;
 use sagitta::certify::{self, Settings};
 use sagitta::element::Order;
-use sagitta::elevate::elevate;
 use sagitta::formats;
 use sagitta::mesh::Mesh;
+use sagitta::mesh::elevate::elevate;
 
 struct Curved {
     mesh: Mesh,

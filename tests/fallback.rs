@@ -7,9 +7,9 @@ mod common;
 use common::impatient::Impatient;
 use common::{json, number, root, sagitta};
 use sagitta::certify::{self, Settings};
+use sagitta::curve::{Job, curve};
 use sagitta::element::Order;
 use sagitta::formats;
-use sagitta::pipeline::{Job, curve};
 
 /// On this torus the straight prisms lean by up to 88 degrees off their own faces, which turn by 50 degrees at P3.
 fn torus(end: &str) -> std::path::PathBuf {

@@ -9,13 +9,14 @@ use std::collections::BTreeMap;
 use cad::{EntityId, FaceId, Group, Model, ReadOptions};
 use common::fixture;
 use glam::DVec3;
-use sagitta::associate::{Association, Boundary, Host, Surface, tie};
+use sagitta::associate::{Association, Host, Surface, tie};
+use sagitta::curve::periodic::Ties;
+use sagitta::curve::wall::fit::fit;
+use sagitta::curve::wall::{Projected, project};
 use sagitta::element::{Order, Samples, basis, interior_extension, interior_start};
-use sagitta::elevate::{Elevated, elevate};
-use sagitta::fit::fit;
 use sagitta::formats;
-use sagitta::periodic::Ties;
-use sagitta::project::{Projected, project};
+use sagitta::mesh::Boundary;
+use sagitta::mesh::elevate::{Elevated, elevate};
 
 /// Points an edge, times the order, at which walls are measured; the fit itself takes 3.
 const DENSITY: usize = 7;

@@ -9,7 +9,8 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use common::{fixture, root, sagitta};
-use sagitta::associate::{Boundary, Host, tie};
+use sagitta::associate::{Host, tie};
+use sagitta::mesh::Boundary;
 
 fn m6(extension: &str) -> PathBuf {
     root().join("fixtures/onera_m6/onera_m6").with_extension(extension)

@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use sagitta::element::{Cell, Order, type_code};
-use sagitta::elevate::elevate;
 use sagitta::formats::msh::{Encoding, Version};
 use sagitta::formats::{self, Field, Support, Values, WriteOptions};
 use sagitta::mesh::Mesh;
+use sagitta::mesh::elevate::elevate;
 
 const ENCODINGS: [Encoding; 2] = [Encoding::Binary, Encoding::Ascii];
 

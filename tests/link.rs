@@ -9,9 +9,8 @@ use std::path::{Path, PathBuf};
 
 use common::{fixture, json, root, sagitta};
 use linkage_schema::{Entity, Resolution, resolve};
-use sagitta::associate::Boundary;
 use sagitta::formats::{self, WriteOptions};
-use sagitta::mesh::{EntityKey, Mesh};
+use sagitta::mesh::{Boundary, EntityKey, Mesh};
 
 const CASES: [&str; 6] = ["weeble", "weeble_hybrid", "wing_sharp", "sphere_shell", "cylinder_bl", "torus"];
 

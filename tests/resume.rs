@@ -9,8 +9,8 @@ use std::path::Path;
 
 use common::impatient::Impatient;
 use common::{Outcome, fixture, json, number, root, sagitta};
+use sagitta::curve::{self, Job};
 use sagitta::element::Order;
-use sagitta::pipeline::{self, Job};
 
 /// The weeble, with work enough for several rounds.
 fn curve(out: &Path, order: &str, max_sweeps: &str, more: &[&str]) -> Outcome {

@@ -5,15 +5,15 @@ use std::path::Path;
 
 use cad::{FaceId, Group, Model, ReadOptions};
 use glam::DVec3;
-use sagitta::associate::{Association, Boundary, Host, Surface};
+use sagitta::associate::{Association, Host, Surface};
 use sagitta::certify::{self, Settings};
+use sagitta::curve::periodic::Ties;
+use sagitta::curve::proof::Proof;
+use sagitta::curve::recover::backtrack::{Fallback, given_up, retreat};
 use sagitta::element::{Cell, Order, lattice};
-use sagitta::elevate::elevate;
 use sagitta::formats;
-use sagitta::mesh::{Block, EntityKey, Mesh, NodeId};
-use sagitta::periodic::Ties;
-use sagitta::proof::Proof;
-use sagitta::retreat::{Fallback, given_up, retreat};
+use sagitta::mesh::elevate::elevate;
+use sagitta::mesh::{Block, Boundary, EntityKey, Mesh, NodeId};
 
 /// A face of a fixture's CAD, by its index.
 fn surface(case: &str, face: usize) -> Surface {

@@ -7,8 +7,8 @@ use glam::DVec3;
 use rustc_hash::FxHashMap;
 
 use super::fit::{check_boxes, plane_through};
-use super::{AssociateError, Association, Boundary, Claimed, Claims, Curve, Host, Plane, Surface};
-use crate::mesh::{EntityKey, Mesh, NodeId};
+use super::{AssociateError, Association, Claimed, Claims, Curve, Host, Plane, Surface};
+use crate::mesh::{Boundary, EntityKey, Mesh, NodeId};
 
 /// A point this near to a CAD entity lies on it; share of the model's diagonal.
 const ON_ENTITY: f64 = 1e-6;

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::{Boundary, Claims};
-use crate::mesh::{EntityKey, Mesh};
+use super::Claims;
+use crate::mesh::{Boundary, EntityKey, Mesh};
 
 /// Patches by name: a physical name, `surface 3`, or `3`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

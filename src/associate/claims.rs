@@ -2,9 +2,8 @@
 
 use cad::{EdgeId, EntityId, FaceId, Model, VertexId};
 
-use super::Boundary;
 use crate::element::Order;
-use crate::mesh::{EntityKey, Mesh, NodeId, Periodic};
+use crate::mesh::{Boundary, EntityKey, Mesh, NodeId, Periodic};
 
 /// Mesh items that are said to lie on CAD entities.
 #[derive(Clone, Debug, Default, PartialEq)]

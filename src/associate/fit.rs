@@ -3,8 +3,8 @@
 use cad::{Aabb, EntityId, Model};
 use glam::DVec3;
 
-use super::{AssociateError, Boundary, Claims, Plane};
-use crate::mesh::Mesh;
+use super::{AssociateError, Claims, Plane};
+use crate::mesh::{Boundary, Mesh};
 
 /// How far mesh and CAD boxes may differ in size before the unit is taken to differ.
 const SAME_SIZE: f64 = 1.5;

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use cad::{EntityId, Model, ReferenceError};
 use linkage_schema::{Document, Entity, GeometryFile, ModelLinks, Resolution};
 
-use super::{Boundary, Claimed, Claims, NotPeriodic, Numbering, Part, UnknownZone, periodic_records, periodic_sheets};
+use super::{Claimed, Claims, NotPeriodic, Numbering, Part, UnknownZone, periodic_records, periodic_sheets};
 use crate::element::Order;
-use crate::mesh::{EntityKey, Mesh, NodeId};
+use crate::mesh::{Boundary, EntityKey, Mesh, NodeId};
 
 /// Why a linkage file could not be used with this mesh and CAD. Every variant names the file and the place.
 #[derive(Debug, thiserror::Error)]

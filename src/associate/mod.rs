@@ -12,7 +12,6 @@
 //! edges differ between STEP and IGES of the same shape.
 
 mod bind;
-mod boundary;
 mod choice;
 mod claims;
 mod document;
@@ -33,7 +32,6 @@ use glam::DVec3;
 use cad::Group;
 
 pub use bind::associate;
-pub use boundary::{Boundary, BoundaryFace};
 pub use choice::{Choice, UnknownPatch};
 pub use claims::{Claimed, Claims};
 pub use document::{TooLarge, Written, document};

@@ -6,9 +6,8 @@ use glam::{DAffine3, DMat4};
 use linkage_schema::{ElementPair, MeshElement, MeshModel, Resolution, Sheet, SheetBody};
 use rustc_hash::FxHashMap;
 
-use super::Boundary;
-use crate::mesh::{EntityKey, Mesh, NodeId, Periodic};
-use crate::periodic::{maps, matched};
+use crate::mesh::periodic::{maps, matched};
+use crate::mesh::{Boundary, EntityKey, Mesh, NodeId, Periodic};
 
 /// Two sheets that are said to correspond and do not.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

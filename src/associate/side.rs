@@ -2,9 +2,8 @@
 
 use glam::DVec3;
 
-use super::Boundary;
 use crate::element::Order;
-use crate::mesh::{Mesh, NodeId};
+use crate::mesh::{Boundary, Mesh, NodeId};
 
 /// A boundary face's place in space.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,10 +4,8 @@ use std::path::Path;
 
 use cad::Model;
 
-use super::{
-    AssociateError, Association, Boundary, Claims, Inference, LinkageError, Tolerance, associate, infer, read_linkage,
-};
-use crate::mesh::Mesh;
+use super::{AssociateError, Association, Claims, Inference, LinkageError, Tolerance, associate, infer, read_linkage};
+use crate::mesh::{Boundary, Mesh};
 
 /// An inference is used where at least this share of the faces of every patch that it ties is decided.
 const DECIDED: f64 = 0.9;

@@ -7,8 +7,8 @@ use cad::{EntityId, Group, Model};
 use glam::DVec3;
 use serde::Serialize;
 
-use super::{Boundary, Claims, Doubt, Inference};
-use crate::mesh::{EntityKey, Mesh, NodeId};
+use super::{Claims, Doubt, Inference};
+use crate::mesh::{Boundary, EntityKey, Mesh, NodeId};
 
 /// Undecided items that are listed as text.
 const LISTED: usize = 10;

@@ -9,7 +9,7 @@
 //! plane across it, without folds and without crossing itself. On a strongly curved wall a coarse face rightly leans by more
 //! than 90 degrees against its linear face: those of the torus at scale 0.5 stand at up to 87 degrees to the wall itself in their
 //! corners. Where `m` does not prove it, another vector is asked for, on the side of `m`: the middle of the face's own normals, if
-//! a survey finds them all on the side of the CAD's normals ([`crate::proof`]); a face that doubles back over its wall is none such.
+//! a survey finds them all on the side of the CAD's normals ([`crate::curve::proof`]); a face that doubles back over its wall is none such.
 
 use glam::DVec3;
 use rayon::prelude::*;

@@ -6,7 +6,7 @@ use super::elements::{Buffer, Elements};
 use super::tests::{Random, straight, unit_corners};
 use super::{Bounds, Certificate, Method, Settings, Verdict, certify, mesh};
 use crate::element::{Cell, Order};
-use crate::elevate::elevate;
+use crate::mesh::elevate::elevate;
 use crate::mesh::{Block, EntityKey, Mesh, NodeId};
 
 /// Curved elements of one kind after another, each with its own nodes.

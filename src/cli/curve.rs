@@ -13,9 +13,9 @@ use super::reading::Reading;
 use super::trace::Trace;
 use super::{DONE, Failure, GIVEN_UP, NOT_CERTIFIED, STOPPED, print, write_json};
 use crate::associate::Choice;
+use crate::curve::{self, Curved, Job};
 use crate::element::Order;
 use crate::formats;
-use crate::pipeline::{self, Curved, Job};
 use crate::report::{fields, report};
 use crate::smooth;
 
@@ -197,7 +197,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let mut teller = Teller::new(options.quiet).stoppable(limit)?;
     let mut trace = Trace::new(&mut teller);
     let mut keeper = Keeper::new(&mut trace, options.checkpoint.clone(), options.checkpoint_every);
-    let curved = pipeline::curve(&job, &mut keeper);
+    let curved = curve::curve(&job, &mut keeper);
     if let Some(failure) = keeper.failure {
         eprintln!("sagitta: the last checkpoint was not written: {failure}");
     }
@@ -229,7 +229,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
 
 /// Tells what lies on what.
 fn dry_run(job: &Job, report: Option<&Path>) -> Result<u8, Failure> {
-    let summary = pipeline::association(job)?;
+    let summary = curve::association(job)?;
     if let Some(path) = report {
         write_json(path, &summary)?;
     }

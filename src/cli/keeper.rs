@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use super::trace::Trace;
-use crate::checkpoint::{self, Work};
+use crate::curve::checkpoint::{self, Work};
+use crate::curve::{Observer, Step};
 use crate::element::Order;
 use crate::formats;
-use crate::pipeline::{Observer, Step};
 use crate::smooth::{Checkpoint, Progress};
 
 /// Writes a checkpoint every so many sweeps, and hands everything on.

@@ -8,9 +8,9 @@ use clap::Args;
 use super::curve::positive;
 use super::reading::Reading;
 use super::{DONE, Failure, print, write_json};
-use crate::associate::{self, AssociateError, Boundary, Claims, Inference, Tolerance, associate, infer};
+use crate::associate::{self, AssociateError, Claims, Inference, Tolerance, associate, infer};
 use crate::formats;
-use crate::mesh::Mesh;
+use crate::mesh::{Boundary, Mesh};
 use crate::validate::read_linear;
 
 /// A point may be this far from what its tag names; share of the mesh's box.

@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::INTERRUPTED;
+use crate::curve::{Observer, Step};
 use crate::element::Order;
-use crate::pipeline::{Observer, Step};
 use crate::smooth::Progress;
 
 /// Plain lines come no more often than this.

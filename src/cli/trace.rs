@@ -5,9 +5,9 @@ use std::time::Instant;
 
 use super::Failure;
 use super::progress::Teller;
+use crate::curve::{Observer, Step};
 use crate::element::Order;
 use crate::formats;
-use crate::pipeline::{Observer, Step};
 use crate::smooth::{Progress, Smoothed};
 
 /// Notes every sweep, and hands it on.

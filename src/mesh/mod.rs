@@ -1,12 +1,16 @@
 //! Meshes of order 1 to 4, as they stand in files: points, blocks of elements, entities and their names.
 
+mod boundary;
 mod condition;
+pub mod elevate;
 mod entity;
 mod ids;
+pub mod periodic;
 mod zone;
 
 use glam::DVec3;
 
+pub use boundary::{Boundary, BoundaryFace};
 pub use condition::Condition;
 pub use entity::{Entity, EntityKey, Periodic, PhysicalName};
 pub use ids::{ElementId, NodeId, TooMany};

@@ -11,13 +11,13 @@ use super::{
 };
 use crate::associate::Host;
 use crate::certify::{Certificate, FaceFinding, Judged, Verdict};
+use crate::curve::layers::straight_elements;
+use crate::curve::recover::backtrack::GivenUp;
+use crate::curve::{Curved, Job};
 use crate::element::{Cell, Order, Samples, basis};
 use crate::formats::{Field, Support, Values};
-use crate::layers::straight_elements;
 use crate::mesh::{EntityKey, Mesh};
-use crate::pipeline::{Curved, Job};
 use crate::quality::Columns;
-use crate::retreat::GivenUp;
 
 /// Elements listed as worst.
 const LISTED: usize = 10;

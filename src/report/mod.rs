@@ -10,7 +10,7 @@ mod text;
 
 use serde::Serialize;
 
-use crate::pipeline::LowerOrder;
+use crate::curve::LowerOrder;
 use crate::quality::Turning;
 use crate::smooth::Summary;
 

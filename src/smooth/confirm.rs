@@ -56,7 +56,7 @@ impl Bench {
 mod tests {
     use super::*;
     use crate::element::{Cell, Order};
-    use crate::elevate::elevate;
+    use crate::mesh::elevate::elevate;
     use crate::mesh::{Block, EntityKey, Mesh, NodeId};
 
     /// A P4 hex, squeezed along one axis: `dx/du` is a parabola of mean 1 with its minimum `least` at `c`.

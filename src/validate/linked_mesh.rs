@@ -2,8 +2,8 @@
 
 use linkage_schema::{Code, Findings, MeshModel, ModelLinks};
 
-use crate::associate::{Boundary, Numbering, Part, Side};
-use crate::mesh::{Mesh, NodeId};
+use crate::associate::{Numbering, Part, Side};
+use crate::mesh::{Boundary, Mesh, NodeId};
 
 /// Less than this share of the linked faces in the mesh: it is another mesh, or the numbers count from elsewhere.
 const OTHER: f64 = 0.5;

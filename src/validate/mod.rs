@@ -27,9 +27,9 @@ use cad::{Aabb, Model, ReadOptions};
 use linkage_schema::{Code, Findings, ModelLinks, Position, ReadError, Resolution, Severity};
 use serde::Serialize;
 
-use crate::associate::{Boundary, Numbering, ON_CAD, models_of, sides};
+use crate::associate::{Numbering, ON_CAD, models_of, sides};
 use crate::formats;
-use crate::mesh::Mesh;
+use crate::mesh::{Boundary, Mesh};
 pub use coverage::Coverage;
 pub use distances::Measured;
 use linked_mesh::LinkedMesh;

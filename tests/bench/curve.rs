@@ -5,8 +5,8 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use sagitta::curve::{self, Job, Observer, Step};
 use sagitta::element::Order;
-use sagitta::pipeline::{self, Job, Observer, Step};
 use sagitta::smooth;
 
 struct Silent;

@@ -9,8 +9,8 @@ use std::time::Instant;
 
 use glam::DVec3;
 use sagitta::element::{Cell, Order};
-use sagitta::elevate::elevate;
 use sagitta::formats::{self, ReadOptions, WriteOptions, cgns, msh};
+use sagitta::mesh::elevate::elevate;
 use sagitta::mesh::{Block, EntityKey, Mesh, NodeId};
 
 fn main() -> ExitCode {

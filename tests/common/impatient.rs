@@ -1,7 +1,7 @@
 //! Who ends the work at one order.
 
+use sagitta::curve::{Observer, Step};
 use sagitta::element::Order;
-use sagitta::pipeline::{Observer, Step};
 use sagitta::smooth::Progress;
 
 /// Ends smoothing at the order `at` after so many sweeps there, and lets it go on at all others.

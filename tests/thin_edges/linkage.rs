@@ -4,10 +4,10 @@ use std::path::Path;
 
 use cad::{FaceId, Group};
 use glam::DVec3;
-use sagitta::associate::{self, Boundary};
+use sagitta::associate::{self};
 use sagitta::element::{Cell, Order};
-use sagitta::elevate::elevate;
-use sagitta::mesh::{Block, EntityKey, Mesh, NodeId};
+use sagitta::mesh::elevate::elevate;
+use sagitta::mesh::{Block, Boundary, EntityKey, Mesh, NodeId};
 
 use super::section::{Section, sections};
 use super::side::Side;
@@ -113,7 +113,7 @@ fn project(section: &Section, folder: &Path) -> (usize, usize) {
     let (mut nodes, mut astray) = (0, 0);
     for (p, (tag, face)) in ORDERS.into_iter().flat_map(|p| [(p, (1, 0)), (p, (2, 1))]) {
         let elevated = elevate(&linear, Order::new(p).unwrap()).unwrap();
-        let projected = sagitta::project::project(&elevated, &boundary, &association, false);
+        let projected = sagitta::curve::wall::project(&elevated, &boundary, &association, false);
         let own = Group::of_faces(&model, &[FaceId::new(face)]).unwrap();
         let wall = elevated.mesh.blocks.iter().find(|b| b.entity == EntityKey::new(2, tag)).unwrap();
         let mut numbers: Vec<usize> = wall.nodes.iter().map(|node| node.index()).collect();

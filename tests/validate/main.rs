@@ -220,7 +220,7 @@ fn faces_given_twice_left_out_or_inside() {
 #[test]
 fn faces_inside_the_volume_say_so() {
     let mesh = sagitta::formats::read(&fixture("cylinder_bl", "msh")).unwrap();
-    let boundary = sagitta::associate::Boundary::new(&mesh);
+    let boundary = sagitta::mesh::Boundary::new(&mesh);
     let block = mesh.blocks.iter().find(|block| block.cell.dimension() == 3).unwrap();
     let inner = block.elements(mesh.order).find_map(|nodes| {
         let mut faces = block.cell.faces().iter().map(|face| face.corners.iter().map(|&c| nodes[usize::from(c)]));

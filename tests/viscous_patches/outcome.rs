@@ -6,8 +6,8 @@ use std::time::Instant;
 
 use cad::ReadOptions;
 use glam::DVec3;
+use sagitta::curve::{Curved, Job, Observer, Step, curve};
 use sagitta::element::Order;
-use sagitta::pipeline::{Curved, Job, Observer, Step, curve};
 use sagitta::smooth::{Progress, Summary};
 
 use crate::case::Case;

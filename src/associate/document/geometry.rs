@@ -6,8 +6,8 @@ use cad::EntityId;
 use linkage_schema::{GeometryGroup, GeometryId, GeometryReference, Origin};
 
 use super::model::{patches, union};
-use crate::associate::{Boundary, Claims};
-use crate::mesh::Mesh;
+use crate::associate::Claims;
+use crate::mesh::{Boundary, Mesh};
 
 /// The id of every entity and of every set of several that something lies on.
 pub(super) struct Ids {

@@ -9,8 +9,8 @@ use std::path::Path;
 use cad::Model;
 use linkage_schema::{Attribute, AttributeId, Document, GeometryFile, MeshFile, Origin};
 
-use super::{Boundary, Claims, Numbering};
-use crate::mesh::Mesh;
+use super::{Claims, Numbering};
+use crate::mesh::{Boundary, Mesh};
 use geometry::Ids;
 use model::Models;
 

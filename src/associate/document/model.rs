@@ -11,8 +11,8 @@ use linkage_schema::{
 
 use super::TooLarge;
 use super::geometry::Ids;
-use crate::associate::{Boundary, Claimed, Claims, Numbering, Part, paths};
-use crate::mesh::{EntityKey, Mesh, NodeId};
+use crate::associate::{Claimed, Claims, Numbering, Part, paths};
+use crate::mesh::{Boundary, EntityKey, Mesh, NodeId};
 
 /// Faces of one patch: its targets, each with its faces.
 pub(super) type Runs<'a> = Vec<(&'a [EntityId], Vec<usize>)>;

@@ -6,9 +6,8 @@ use glam::{DAffine3, DMat4};
 use linkage_schema::{AttributeId, ElementLinkage, Origin, Transform, TransformId};
 
 use super::model::Models;
-use crate::associate::Boundary;
-use crate::mesh::{EntityKey, Mesh, NodeId, Periodic};
-use crate::periodic::{map_of, matched};
+use crate::mesh::periodic::{map_of, matched};
+use crate::mesh::{Boundary, EntityKey, Mesh, NodeId, Periodic};
 
 /// Linkages with their transforms, and what could not be written.
 #[derive(Default)]

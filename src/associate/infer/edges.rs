@@ -6,8 +6,8 @@ use cad::{EdgeId, EntityId, FaceId, Model, VertexId};
 
 use super::Doubt;
 use super::incidence::Incidence;
-use crate::associate::{Boundary, Claimed, Joints};
-use crate::mesh::NodeId;
+use crate::associate::{Claimed, Joints};
+use crate::mesh::{Boundary, NodeId};
 
 /// Mesh edges on CAD edges.
 pub(super) struct Strings {

@@ -7,8 +7,8 @@ use cad::{EdgeId, FaceId};
 use super::Doubt;
 use super::incidence::Incidence;
 use crate::associate::joint::normal_at;
-use crate::associate::{Boundary, Claimed, Joints, Side};
-use crate::mesh::{EntityKey, Mesh};
+use crate::associate::{Claimed, Joints, Side};
+use crate::mesh::{Boundary, EntityKey, Mesh};
 
 /// A mesh face runs along a CAD face if the cosine between their normals is at least this.
 pub(super) const ALONG: f64 = 0.5;

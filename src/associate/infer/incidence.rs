@@ -7,9 +7,9 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::Tolerance;
-use crate::associate::{Boundary, Joints};
+use crate::associate::Joints;
 use crate::element::Order;
-use crate::mesh::{Mesh, NodeId};
+use crate::mesh::{Boundary, Mesh, NodeId};
 
 /// The middle of a mesh edge may be this far from the CAD edge that it runs along; share of its length (an arc of 180 degrees has 0.5).
 const BULGE: f64 = 0.5;

@@ -20,8 +20,8 @@ mod quilts;
 
 use cad::{Aabb, FaceId, Model};
 
-use super::{Boundary, Claims, Joints, sides};
-use crate::mesh::Mesh;
+use super::{Claims, Joints, sides};
+use crate::mesh::{Boundary, Mesh};
 pub use incidence::Incidence;
 
 /// Default tolerance, as a share of the mesh's box.

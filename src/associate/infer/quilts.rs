@@ -8,7 +8,8 @@ use super::Doubt;
 use super::faces::{ALONG, BULGE};
 use super::incidence::Incidence;
 use crate::associate::joint::{SHARP, normal_at};
-use crate::associate::{Boundary, Joints, Side};
+use crate::associate::{Joints, Side};
+use crate::mesh::Boundary;
 
 /// The CAD faces of every mesh face, ascending, and the doubts that are left.
 type Hosts = (Vec<Option<Vec<FaceId>>>, Vec<(usize, Doubt)>);

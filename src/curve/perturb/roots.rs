@@ -7,7 +7,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::element::Cell;
-use crate::elevate::Elevated;
+use crate::mesh::elevate::Elevated;
 
 /// The mesh edges at each linear node.
 pub(super) struct Graph<'a> {

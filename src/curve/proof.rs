@@ -4,10 +4,10 @@ use cad::Group;
 use glam::DVec3;
 use rustc_hash::FxHashSet;
 
-use crate::associate::{Association, Boundary, Host, normal_at};
+use crate::associate::{Association, Host, normal_at};
 use crate::certify::{self, Certificate, WallFace, Walls};
 use crate::element::{Cell, Order, Samples, basis};
-use crate::mesh::{Mesh, NodeId};
+use crate::mesh::{Boundary, Mesh, NodeId};
 
 /// Divisions an edge, times the order, at which a face that leans far is compared with the CAD's normals.
 const SURVEY: usize = 4;

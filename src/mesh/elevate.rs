@@ -9,8 +9,8 @@ use std::ops::Range;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::{Block, EntityKey, Mesh, NodeId, TooMany};
 use crate::element::{Cell, InteriorSlots, Order, basis, canonical, interior_start};
-use crate::mesh::{Block, EntityKey, Mesh, NodeId, TooMany};
 
 /// Elements whose sides are looked up at a time: what they take while they wait does not grow with the mesh.
 const BATCH: usize = 1 << 12;

@@ -3,7 +3,7 @@
 //! A polynomial through nodes on the CAD is off it between them. Where an edge spans a change of slope or curvature, it bulges: an
 //! edge of P2 is off by about `h^3 k' / 125`, `h` its length and `k'` the change of curvature along it. Sliding the node by `b h`
 //! bends the polynomial by `b h^2 k` times a cubic of the same shape, so that a small slide takes the cubic away wherever there is
-//! curvature. Every edge on its own makes it worse (see [`crate::project`]): the faces between the edges bulge, and thin
+//! curvature. Every edge on its own makes it worse (see [`crate::curve::wall`]): the faces between the edges bulge, and thin
 //! faces fold. So all edges around the farthest faces are fitted together:
 //!
 //! 1. Measure the distance of every curved wall face from its surface, and of every edge on a curve from that. Each surface and curve
@@ -16,7 +16,7 @@
 //!    than before and near its level, slides are halved, until there is none.
 //! 5. Keep this if a level has fallen by a worthwhile share, and begin again; else take it back.
 //!
-//! So no level rises, of no surface and no curve. What is gained stands in [`crate::project`].
+//! So no level rises, of no surface and no curve. What is gained stands in [`crate::curve::wall`].
 
 mod measure;
 mod model;
@@ -27,12 +27,12 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::associate::{Association, Boundary, Host, normal_at};
+use crate::associate::{Association, Host, normal_at};
+use crate::curve::periodic::Ties;
+use crate::curve::wall::Projected;
 use crate::element::Cell;
-use crate::elevate::Elevated;
-use crate::mesh::NodeId;
-use crate::periodic::Ties;
-use crate::project::Projected;
+use crate::mesh::elevate::Elevated;
+use crate::mesh::{Boundary, NodeId};
 use measure::{Part, Piece};
 use model::{Model, Response, Slider, gradients, relax};
 use table::Table;

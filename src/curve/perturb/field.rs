@@ -4,8 +4,8 @@ use cad::{Aabb, BoxTree};
 use glam::DVec3;
 
 use crate::element::{Cell, Order, basis};
-use crate::elevate::Elevated;
 use crate::mesh::NodeId;
+use crate::mesh::elevate::Elevated;
 
 /// Reach of the displacement, in displacements of the wall around the foot.
 const REACH: f64 = 5.0;

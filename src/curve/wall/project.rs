@@ -9,7 +9,7 @@
 //! line and an arc by a half, with the node at 0.55 to 0.65 of the length. For every edge alone that makes the wall worse: with up to
 //! 0.03, 0.06 and 0.1 of the length the nozzle at scale 0.4 went from 1.5e-3 to 1.7, 2.1 and 2.3e-3 off the CAD, as the faces between
 //! such edges bulge, and wing_blunt at scale 0.4 from C_WCN 0.94 to 0.06, as the edges of thin faces no longer move alike. So the edges
-//! around the farthest faces are fitted together ([`crate::fit`]). Farthest point of the wall from its CAD, min C_WCN / C_JAC, seconds
+//! around the farthest faces are fitted together ([`crate::curve::wall::fit`]). Farthest point of the wall from its CAD, min C_WCN / C_JAC, seconds
 //! of projection (all orders together), before and after:
 //!
 //! | case | as spread | fitted |
@@ -34,19 +34,17 @@
 //! | torus P4 | 9.68e-5, 0.847 / 0.816 | 3.39e-5, 0.845 / 0.814 |
 
 use std::iter::once;
-use std::mem::discriminant;
 
-use cad::{EntityId, Evaluation, Foot, Group};
+use cad::Foot;
 use glam::DVec3;
 use rayon::prelude::*;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 
-use crate::associate::{Association, Boundary, Host};
+use super::state::{Projected, group_of};
+use crate::associate::{Association, Host};
 use crate::element::{Cell, Order, interior_count, interior_extension, interior_start};
-use crate::elevate::Elevated;
-use crate::mesh::NodeId;
-use crate::periodic::Ties;
-use crate::smooth::{Anchor, Constraint, Freedom, Image};
+use crate::mesh::elevate::Elevated;
+use crate::mesh::{Boundary, NodeId};
 
 /// Edges, faces or nodes that are projected at a time: what they take while they wait does not grow with the mesh.
 const BATCH: usize = 1 << 12;
@@ -54,39 +52,6 @@ const BATCH: usize = 1 << 12;
 const STATIONS: usize = 4;
 /// A projected edge this much longer than its chord does not run beside it: its nodes are not spread.
 const LONGEST: f64 = 2.0;
-
-/// How far a wall node may slide before it costs as much as a badly shaped element: share of the edge or face that it lies in.
-///
-/// On the weeble free sliding gained 0.004 in min C_JAC and took the P3 wall 2.2 times as far from the CAD.
-const SLIDE: f64 = 1e-3;
-/// The same for a linear node: share of its shortest edge. All edges and faces around it follow, and with the share of the others the
-/// weeble at P3 ended with C_JAC 0.73 in place of 0.80.
-const SLIDE_LINEAR: f64 = 1e-4;
-
-/// Hosts and places of all nodes after projection.
-#[derive(Clone, Debug)]
-pub struct Projected {
-    /// Host of every node up to [`Elevated::boundary_nodes`]; the nodes after them are free.
-    pub hosts: Vec<Host>,
-    /// Displacement of every boundary node from its straight place to its CAD group; zero for the others, as many as hosts.
-    pub displacement: Vec<DVec3>,
-    /// By boundary node, the size of the edge or face that it lies inside; of a linear node's edges, the shortest.
-    pub sizes: FxHashMap<usize, f64>,
-    /// Linear nodes beyond the layers that may be curved, by node; empty where there is no such limit.
-    pub beyond: Vec<bool>,
-    /// How many closest points were asked for to place nodes.
-    pub projections: usize,
-    /// How many of them are not proven to be the closest.
-    pub unproven: usize,
-}
-
-impl Projected {
-    /// The host of any node.
-    #[must_use]
-    pub fn host(&self, node: usize) -> Host {
-        self.hosts.get(node).copied().unwrap_or(Host::Free)
-    }
-}
 
 /// Projects the boundary nodes of an elevated mesh.
 ///
@@ -288,112 +253,4 @@ fn inverted(lengths: &[f64], shares: &[f64], length: f64) -> Option<f64> {
         share += weight * y[i];
     }
     Some(share)
-}
-
-/// The CAD that holds a host's nodes.
-pub(crate) fn group_of(association: &Association, host: Host) -> Option<&Group> {
-    match host {
-        Host::Surface(surface) => Some(&association.surfaces[surface].group),
-        Host::Curve(curve) => Some(&association.curves[curve].group),
-        _ => None,
-    }
-}
-
-/// Keeps boundary nodes on their hosts.
-pub struct CadConstraint<'a> {
-    association: &'a Association,
-    straight: &'a [DVec3],
-    projected: &'a Projected,
-    ties: &'a Ties,
-    held: FxHashSet<NodeId>,
-    linear_nodes: usize,
-    freeze_walls: bool,
-    freeze_linear: bool,
-}
-
-impl<'a> CadConstraint<'a> {
-    /// The constraint of the given hosts.
-    ///
-    /// With `freeze_linear` all linear nodes are held. With `freeze_walls` nodes on curves and curved surfaces are held; nodes
-    /// in planes move all the same. Nodes of periodic patches move as images of one another, and are held where their hosts are not
-    /// of one kind.
-    #[must_use]
-    pub fn new(
-        association: &'a Association,
-        straight: &'a [DVec3],
-        projected: &'a Projected,
-        ties: &'a Ties,
-        linear_nodes: usize,
-        freeze_walls: bool,
-        freeze_linear: bool,
-    ) -> CadConstraint<'a> {
-        let kind = |node: NodeId| {
-            let host = projected.host(node.index());
-            (discriminant(&host), association.plane_of(host).is_some())
-        };
-        let unlike = ties.images().iter().filter(|image| kind(image.node) != kind(image.of));
-        let held = unlike.flat_map(|image| [image.node, image.of]).collect();
-        CadConstraint { association, straight, projected, ties, held, linear_nodes, freeze_walls, freeze_linear }
-    }
-
-    fn foot(&self, host: Host, x: DVec3) -> Option<Foot> {
-        group_of(self.association, host).map(|group| group.closest(x, None))
-    }
-}
-
-impl Constraint for CadConstraint<'_> {
-    fn freedom(&self, node: NodeId, at: DVec3) -> Freedom {
-        let host = self.projected.host(node.index());
-        if self.freeze_linear && node.index() < self.linear_nodes {
-            return Freedom::Fixed;
-        }
-        if self.held.contains(&node) {
-            return Freedom::Fixed;
-        }
-        if host == Host::Free {
-            return Freedom::Space;
-        }
-        if let Some(plane) = self.association.plane_of(host) {
-            return Freedom::Plane(plane.normal);
-        }
-        if self.freeze_walls {
-            return Freedom::Fixed;
-        }
-        let (Some(foot), Some(group)) = (self.foot(host, at), group_of(self.association, host)) else {
-            return Freedom::Fixed;
-        };
-        // A foot on a rim has the parameters of the rim's own curve on its face, so that it has a normal as well.
-        match group.evaluate(foot.entity, foot.parameters) {
-            Some(Evaluation::Surface(point)) if matches!(foot.entity, EntityId::Face(_)) => {
-                point.normal.map_or(Freedom::Fixed, Freedom::Plane)
-            }
-            Some(Evaluation::Curve(point)) => point.tangent.map_or(Freedom::Fixed, Freedom::Line),
-            _ => Freedom::Fixed,
-        }
-    }
-
-    fn restrict(&self, node: NodeId, from: DVec3, wish: DVec3) -> DVec3 {
-        let host = self.projected.host(node.index());
-        if let Some(plane) = self.association.plane_of(host) {
-            return plane.closest(wish);
-        }
-        match host {
-            Host::Surface(_) | Host::Curve(_) => self.foot(host, wish).map_or(from, |foot| foot.point),
-            Host::Free => wish,
-            Host::Plane(_) | Host::Vertex(_) | Host::Straight => from,
-        }
-    }
-
-    fn images(&self) -> &[Image] {
-        self.ties.images()
-    }
-
-    fn anchor(&self, node: NodeId) -> Option<Anchor> {
-        let n = node.index();
-        let host = self.projected.host(n);
-        group_of(self.association, host).filter(|_| self.association.plane_of(host).is_none())?;
-        let size = self.projected.sizes.get(&n)?;
-        let share = if n < self.linear_nodes { SLIDE_LINEAR } else { SLIDE };
-        Some(Anchor { place: self.straight[n] + self.projected.displacement[n], slack: share * size })
-    }
 }

@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
+use crate::curve::recover::backtrack::Fallback;
+use crate::curve::wall::CadConstraint;
 use crate::mesh::NodeId;
-use crate::project::CadConstraint;
-use crate::retreat::Fallback;
 use crate::smooth::{Anchor, Constraint, Freedom, Image};
 
 /// The way of all nodes from the fallback to the CAD; nodes that are not on walls have none.

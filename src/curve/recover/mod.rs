@@ -4,8 +4,8 @@
 //! 1. Smooth again, with surveys twice as dense, where elements fail.
 //! 2. Take the displacement back around the failing elements, at first by half, more from round to round, with a share that
 //!    falls smoothly with the distance, and smooth again; wall nodes that are off the CAD stay where they were put.
-//! 3. [`retreat`], element by element, which ends in a valid mesh whatever came before.
-//! 4. Forward again what was taken back, step by step, as far as the mesh stays proven ([`advance`]).
+//! 3. [`backtrack`], element by element, which ends in a valid mesh whatever came before.
+//! 4. Forward again what was taken back, step by step, as far as the mesh stays proven ([`forward`]).
 //!
 //! Back means to the curved mesh of the order below, where that is proven valid: on it the wall follows the CAD as well as that order
 //! can, and all nodes go back together. Otherwise it means the straight mesh: the wall goes back, and the volume is carried along as
@@ -13,23 +13,25 @@
 //! faces, is inverted at P3 after 20 sweeps; by way of P2 it then comes to the CAD with C_JAC 0.35, by way of the straight mesh with
 //! 0.08 (`tests/fallback.rs`).
 
-mod advance;
+pub mod backtrack;
+mod forward;
 mod spot;
 mod way;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::ascent::{Fall, Ready};
-use crate::associate::{Association, Boundary, Host};
+use crate::associate::{Association, Host};
+use crate::curve::Job;
+use crate::curve::orders::{Fall, Ready};
+use crate::curve::periodic::Ties;
+use crate::curve::perturb::perturb;
+use crate::curve::proof::Proof;
+use crate::curve::recover::backtrack::{Fallback, GivenUp, given_up, retreat};
+use crate::curve::wall::{CadConstraint, Projected};
 use crate::element::Order;
-use crate::elevate::Elevated;
-use crate::periodic::Ties;
-use crate::perturb::perturb;
-use crate::pipeline::Job;
-use crate::project::{CadConstraint, Projected};
-use crate::proof::Proof;
-use crate::retreat::{Fallback, GivenUp, given_up, retreat};
+use crate::mesh::Boundary;
+use crate::mesh::elevate::Elevated;
 use crate::smooth::{self, Problem, Progress, Smoothed, smooth};
 use spot::Spot;
 use way::{Held, Way};
@@ -210,7 +212,7 @@ impl<'a, 'f> Ladder<'a, 'f> {
         self.follow(&back, carried, now);
     }
 
-    /// [`retreat`], where the proof does not hold.
+    /// [`backtrack`], where the proof does not hold.
     fn retreat(&mut self, now: &mut Standing) {
         if now.proof.holds() {
             return;

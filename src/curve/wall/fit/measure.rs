@@ -8,9 +8,9 @@ use rayon::prelude::*;
 
 use super::Fit;
 use crate::associate::Host;
+use crate::curve::wall::group_of;
 use crate::element::{Cell, edge_nodes};
 use crate::mesh::NodeId;
-use crate::project::group_of;
 
 /// Faces that are measured at a time: what they take while they wait does not grow with the mesh.
 const BATCH: usize = 1 << 12;
@@ -18,9 +18,9 @@ const BATCH: usize = 1 << 12;
 /// What is measured: a mesh face on a surface, or a mesh edge on a curve.
 #[derive(Clone, Copy)]
 pub(super) enum Part {
-    /// By index in [`crate::associate::Boundary::faces`].
+    /// By index in [`crate::mesh::Boundary::faces`].
     Face(usize),
-    /// By index in [`crate::associate::Boundary::edges`].
+    /// By index in [`crate::mesh::Boundary::edges`].
     Edge(usize),
 }
 

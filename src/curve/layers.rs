@@ -5,11 +5,11 @@ use std::num::NonZeroUsize;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::associate::{Association, Boundary, Host};
-use crate::elevate::Elevated;
-use crate::mesh::{Mesh, NodeId};
-use crate::periodic::Ties;
-use crate::project::Projected;
+use crate::associate::{Association, Host};
+use crate::curve::periodic::Ties;
+use crate::curve::wall::Projected;
+use crate::mesh::elevate::Elevated;
+use crate::mesh::{Boundary, Mesh, NodeId};
 
 /// Keeps all elements straight that lie beyond so many layers of elements off the curved walls. The first layer are the
 /// elements that touch a curved wall, each next one those that touch a node of the layers before it. The nodes of the

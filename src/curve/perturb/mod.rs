@@ -45,10 +45,11 @@ mod roots;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::associate::{Association, Boundary, Host};
-use crate::elevate::Elevated;
-use crate::periodic::Ties;
-use crate::project::Projected;
+use crate::associate::{Association, Host};
+use crate::curve::periodic::Ties;
+use crate::curve::wall::Projected;
+use crate::mesh::Boundary;
+use crate::mesh::elevate::Elevated;
 use field::Field;
 pub use field::WallFace;
 use roots::Graph;

@@ -26,6 +26,15 @@
 //! active element and again for each node, the inverse block (72), and 8 pairs of steps and gradient changes (48 each): 1.3 kB an
 //! active node at P2.
 
+pub mod checkpoint;
+pub mod layers;
+pub(crate) mod orders;
+pub mod periodic;
+pub mod perturb;
+pub mod proof;
+pub mod recover;
+pub mod wall;
+
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -33,21 +42,19 @@ use std::time::Instant;
 use cad::{Model, ReadOptions};
 use glam::DVec3;
 
-pub use crate::ascent::LowerOrder;
-use crate::ascent::{Ascent, Climb, Level, Ready};
-use crate::associate::{
-    self, AssociateError, Association, Boundary, Choice, LinkageError, Summary, TieError, UnknownPatch,
-};
+use crate::associate::{self, AssociateError, Association, Choice, LinkageError, Summary, TieError, UnknownPatch};
 use crate::certify::{self, Certificate, Walls};
-use crate::checkpoint::{CheckpointError, Work};
+use crate::curve::checkpoint::{CheckpointError, Work};
+pub use crate::curve::orders::LowerOrder;
+use crate::curve::orders::{Ascent, Climb, Level, Ready};
+use crate::curve::proof::Proof;
+use crate::curve::recover::backtrack::GivenUp;
+use crate::curve::recover::{Climbed, Ladder};
+use crate::curve::wall::Projected;
 use crate::element::Order;
-use crate::elevate::Elevated;
 use crate::formats;
-use crate::ladder::{Climbed, Ladder};
-use crate::mesh::{Mesh, TooMany};
-use crate::project::Projected;
-use crate::proof::Proof;
-use crate::retreat::GivenUp;
+use crate::mesh::elevate::Elevated;
+use crate::mesh::{Boundary, Mesh, TooMany};
 use crate::smooth::{self, Checkpoint, Smoothed, Watch};
 
 /// Elements that an error lists by number.

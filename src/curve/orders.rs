@@ -15,7 +15,7 @@
 //! | wing_blunt 0.4 P4 | 0.880 / 0.573, 15.6 | 0.914 / 0.719, 10.1 |
 //! | nozzle 0.4 P4 | 0.959 / 0.812, 15.0 | 0.954 / 0.805, 6.1 |
 //!
-//! An order that comes out inverted goes through the ladder ([`crate::ladder`]); the next one begins there if it ends on the CAD, proven,
+//! An order that comes out inverted goes through the ladder ([`crate::curve::recover`]); the next one begins there if it ends on the CAD, proven,
 //! and else at the last order that did. With 30 sweeps an order the torus at scale 0.5 comes out inverted at P3; P4 then ended with 56
 //! faces off the CAD when it began at P2, and on it with C_JAC 0.25 when it begins at what the ladder made of P3.
 //!
@@ -24,18 +24,18 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::associate::{Association, Boundary, Host};
-use crate::checkpoint::{CheckpointError, Found};
+use crate::associate::{Association, Host};
+use crate::curve::checkpoint::{CheckpointError, Found};
+use crate::curve::layers::leave_straight_beyond;
+use crate::curve::periodic::Ties;
+use crate::curve::perturb::perturb;
+use crate::curve::recover::Ladder;
+use crate::curve::wall::fit::fit;
+use crate::curve::wall::{CadConstraint, Projected, project};
+use crate::curve::{Clock, Job, Observer, PipelineError, Step, Told};
 use crate::element::{Cell, Order, basis};
-use crate::elevate::{Elevated, elevate};
-use crate::fit::fit;
-use crate::ladder::Ladder;
-use crate::layers::leave_straight_beyond;
-use crate::mesh::{Mesh, NodeId};
-use crate::periodic::Ties;
-use crate::perturb::perturb;
-use crate::pipeline::{Clock, Job, Observer, PipelineError, Step, Told};
-use crate::project::{CadConstraint, Projected, project};
+use crate::mesh::elevate::{Elevated, elevate};
+use crate::mesh::{Boundary, Mesh, NodeId};
 use crate::smooth::{Engine, Problem, Progress, Smoothed, Summary, smooth};
 
 /// Weights of nodes that are as good as zero: a node on a face takes nothing from those off it.

@@ -7,12 +7,12 @@
 
 use glam::DVec3;
 
-use crate::associate::{Association, Boundary, Host};
+use crate::associate::{Association, Host};
 use crate::certify::{self, Buffer, Elements, MeshElements};
+use crate::curve::periodic::Ties;
+use crate::curve::proof::{Proof, behind, walls};
 use crate::element::{Cell, Order};
-use crate::mesh::Mesh;
-use crate::periodic::Ties;
-use crate::proof::{Proof, behind, walls};
+use crate::mesh::{Boundary, Mesh};
 
 /// A share of the displacement below this counts as none.
 const LEAST_SHARE: f64 = 0.125;

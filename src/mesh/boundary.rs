@@ -2,8 +2,8 @@
 
 use rustc_hash::FxHashMap;
 
+use super::{EntityKey, Mesh, NodeId};
 use crate::element::{Cell, Order, canonical};
-use crate::mesh::{EntityKey, Mesh, NodeId};
 
 /// A two-dimensional element of the mesh file.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,0 +1,11 @@
+//! The boundary's nodes: put on the CAD, fitted to it, and kept on it.
+
+mod constraint;
+pub mod fit;
+mod project;
+mod state;
+
+pub use constraint::CadConstraint;
+pub use project::project;
+pub use state::Projected;
+pub(crate) use state::group_of;
