@@ -29,8 +29,8 @@
 //! The order of the steps stands in [`pipeline`]; each step is a module named after it:
 //!
 //! 1. [`formats`] reads the linear mesh into a [`mesh::Mesh`]; [`cad::Model::read`] reads the CAD in a child process.
-//! 2. [`associate`] ties boundary faces, edges and points to groups of CAD entities, by a linkage file, entity tags or geometry, and
-//!    holds the claims against the CAD.
+//! 2. [`associate`] periodic boundary faces, edges and points to groups of CAD entities, by a linkage file, entity tags or geometry, and
+//!    holds the candidates against the CAD.
 //! 3. [`elevate`] makes the new nodes at their straight places.
 //! 4. [`project`] spreads the boundary's new nodes and puts them on their groups; [`fit`] slides them on it so that the wall between
 //!    them is nearer to the CAD.

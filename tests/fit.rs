@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 use cad::{EntityId, FaceId, Group, Model, ReadOptions};
 use common::fixture;
 use glam::DVec3;
-use sagitta::associate::{Association, Host, Surface, tie};
-use sagitta::curve::periodic::Ties;
+use sagitta::associate::{Association, Classification, Surface, classify};
+use sagitta::curve::periodic::PeriodicConstraint;
 use sagitta::curve::wall::fit::fit;
 use sagitta::curve::wall::{Projected, project};
 use sagitta::element::{Order, Samples, basis, interior_extension, interior_start};
@@ -30,9 +30,9 @@ fn levels(
 ) -> BTreeMap<usize, f64> {
     let order = elevated.mesh.order;
     let mut levels = BTreeMap::new();
-    for (f, (face, host)) in boundary.faces.iter().zip(&association.faces).enumerate() {
-        let Host::Surface(surface) = *host else { continue };
-        if association.plane_of(*host).is_some() {
+    for (f, (face, classification)) in boundary.faces.iter().zip(&association.faces).enumerate() {
+        let Classification::Surface(surface) = *classification else { continue };
+        if association.plane_of(*classification).is_some() {
             continue; // its inner edges are carried by the perturbation
         }
         let nodes = boundary.nodes(f, &elevated.mesh);
@@ -48,11 +48,11 @@ fn levels(
     levels
 }
 
-fn group(association: &Association, host: Host) -> &Group {
-    match host {
-        Host::Surface(surface) => &association.surfaces[surface].group,
-        Host::Curve(curve) => &association.curves[curve].group,
-        _ => panic!("{host:?} holds no node that slides"),
+fn group(association: &Association, classification: Classification) -> &Group {
+    match classification {
+        Classification::Surface(surface) => &association.surfaces[surface].group,
+        Classification::Curve(curve) => &association.curves[curve].group,
+        _ => panic!("{classification:?} holds no node that slides"),
     }
 }
 
@@ -70,18 +70,19 @@ impl Outcome {
         let boundary = Boundary::new(&linear);
         let reading = ReadOptions { reader: env!("CARGO_BIN_EXE_sagitta").into(), ..ReadOptions::default() };
         let model = Model::read(&fixture(case, "step"), &reading).unwrap();
-        let association = tie(None, &linear, &boundary, &model, 1e-3, &|_| {}).unwrap().association;
+        let association = classify(None, &linear, &boundary, &model, 1e-3, &|_| {}).unwrap().association;
         let mut elevated = elevate(&linear, Order::new(order).unwrap()).unwrap();
-        let (ties, _) = Ties::new(&mut elevated, &boundary, false);
+        let (periodic, _) = PeriodicConstraint::new(&mut elevated, &boundary, false);
         let mut projected = project(&elevated, &boundary, &association, false);
         let start = projected.displacement.clone();
         let before = levels(&elevated, &boundary, &association, &projected);
-        fit(&elevated, &boundary, &association, &ties, &mut projected);
+        fit(&elevated, &boundary, &association, &periodic, &mut projected);
         let after = levels(&elevated, &boundary, &association, &projected);
         let mut slid = 0.0_f64;
         for (n, displacement) in projected.displacement.iter().enumerate().filter(|(n, d)| **d != start[*n]) {
             let size = projected.sizes[&n];
-            let off = group(&association, projected.host(n)).closest(elevated.mesh.points[n] + *displacement, None);
+            let off =
+                group(&association, projected.classification(n)).closest(elevated.mesh.points[n] + *displacement, None);
             assert!(off.distance < 1e-7 * size, "{case} P{order}: node {n} is {:e} off the CAD", off.distance);
             assert!(n >= elevated.linear_nodes, "{case} P{order}: linear node {n} has slid");
             slid = slid.max(displacement.distance(start[n]) / size);
@@ -126,17 +127,17 @@ fn the_inside_of_straight_faces_follows_their_rims() {
     let boundary = Boundary::new(&linear);
     let reading = ReadOptions { reader: env!("CARGO_BIN_EXE_sagitta").into(), ..ReadOptions::default() };
     let model = Model::read(&fixture("weeble", "step"), &reading).unwrap();
-    let mut association = tie(None, &linear, &boundary, &model, 1e-3, &|_| {}).unwrap().association;
+    let mut association = classify(None, &linear, &boundary, &model, 1e-3, &|_| {}).unwrap().association;
     let third = |surface: &Surface| surface.group.entities() == [EntityId::Face(FaceId::new(2))];
     let waist = association.surfaces.iter().position(third).unwrap();
     let straight: Vec<usize> =
-        (0..boundary.faces.len()).filter(|&f| association.faces[f] == Host::Surface(waist)).collect();
-    straight.iter().for_each(|&f| association.faces[f] = Host::Straight);
+        (0..boundary.faces.len()).filter(|&f| association.faces[f] == Classification::Surface(waist)).collect();
+    straight.iter().for_each(|&f| association.faces[f] = Classification::Straight);
     let mut elevated = elevate(&linear, order).unwrap();
-    let (ties, _) = Ties::new(&mut elevated, &boundary, false);
+    let (periodic, _) = PeriodicConstraint::new(&mut elevated, &boundary, false);
     let mut projected = project(&elevated, &boundary, &association, false);
     let before = projected.displacement.clone();
-    fit(&elevated, &boundary, &association, &ties, &mut projected);
+    fit(&elevated, &boundary, &association, &periodic, &mut projected);
     let mut beside = 0;
     for face in straight {
         let cell = boundary.faces[face].cell;

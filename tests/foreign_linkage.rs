@@ -9,7 +9,7 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use common::{fixture, root, sagitta};
-use sagitta::associate::{Host, tie};
+use sagitta::associate::{Classification, classify};
 use sagitta::mesh::Boundary;
 
 fn m6(extension: &str) -> PathBuf {
@@ -41,18 +41,24 @@ fn nodes_where_the_edges_of_a_string_meet_are_held() {
     let reading = cad::ReadOptions { reader: env!("CARGO_BIN_EXE_sagitta").into(), ..cad::ReadOptions::default() };
     let model = cad::Model::read(&m6("egads"), &reading).unwrap();
     let [linkage, mesh] = [m6("meshlink.xml"), m6("msh")];
-    let association = tie(Some([&linkage, &mesh]), &linear, &boundary, &model, 1e-3, &|_| {}).unwrap().association;
+    let association = classify(Some([&linkage, &mesh]), &linear, &boundary, &model, 1e-3, &|_| {}).unwrap().association;
     let mut held = 0;
     for (node, place) in linear.points.iter().enumerate() {
         let around = (0..boundary.edges.len()).filter(|&e| boundary.edges[e].iter().any(|n| n.index() == node));
-        let around: Vec<Host> =
-            around.map(|e| association.edges[e]).filter(|host| matches!(host, Host::Curve(_))).collect();
+        let around: Vec<Classification> = around
+            .map(|e| association.edges[e])
+            .filter(|classification| matches!(classification, Classification::Curve(_)))
+            .collect();
         let one = around.windows(2).all(|pair| pair[0] == pair[1]);
         let at_vertex = model.vertices().iter().any(|vertex| vertex.point.distance(*place) < 1e-6);
-        if let (Some(Host::Curve(curve)), true, true) = (around.first(), one, at_vertex)
+        if let (Some(Classification::Curve(curve)), true, true) = (around.first(), one, at_vertex)
             && association.curves[*curve].group.entities().len() > 1
         {
-            assert!(matches!(association.nodes[node], Host::Vertex(_)), "node {node}: {:?}", association.nodes[node]);
+            assert!(
+                matches!(association.nodes[node], Classification::Vertex(_)),
+                "node {node}: {:?}",
+                association.nodes[node]
+            );
             held += 1;
         }
     }

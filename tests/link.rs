@@ -265,7 +265,7 @@ fn a_thin_cambered_plate_goes_to_its_own_side() {
     let corners: usize = mesh.blocks_of(0).map(|(_, block)| block.tags.len()).sum();
     assert_eq!((edges.len(), points.len()), (lines, corners));
 
-    // It is the trap that it claims to be: the sides are the faces with most elements but those of the box.
+    // It is the trap that it candidates to be: the sides are the faces with most elements but those of the box.
     let at = |n: usize| mesh.points[n];
     let arc = |x: f64, height: f64| {
         let radius = (0.25 + height * height) / (2.0 * height);

@@ -91,7 +91,7 @@ fn falls_back_as_without_interruption() {
         job.reading.reader = env!("CARGO_BIN_EXE_sagitta").into();
         job.smoothing.max_sweeps = SWEEPS;
         job.resume = resume.map(Into::into);
-        pipeline::curve(&job, &mut Impatient::new(4, 1)).unwrap()
+        curve::curve(&job, &mut Impatient::new(4, 1)).unwrap()
     };
     let (whole, second) = (curve_p4(None), curve_p4(Some(&state)));
     for (curved, orders) in [(&whole, 2), (&second, 1)] {

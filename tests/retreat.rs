@@ -5,9 +5,9 @@ use std::path::Path;
 
 use cad::{FaceId, Group, Model, ReadOptions};
 use glam::DVec3;
-use sagitta::associate::{Association, Host, Surface};
+use sagitta::associate::{Association, Classification, Surface};
 use sagitta::certify::{self, Settings};
-use sagitta::curve::periodic::Ties;
+use sagitta::curve::periodic::PeriodicConstraint;
 use sagitta::curve::proof::Proof;
 use sagitta::curve::recover::backtrack::{Fallback, given_up, retreat};
 use sagitta::element::{Cell, Order, lattice};
@@ -27,7 +27,8 @@ fn surface(case: &str, face: usize) -> Surface {
 fn displacements_are_taken_back_until_every_element_is_valid() {
     let linear = formats::read(Path::new("fixtures/sphere_shell/sphere_shell.msh")).unwrap();
     let boundary = Boundary::new(&linear);
-    let association = Association { faces: vec![Host::Surface(0); boundary.faces.len()], ..Association::default() };
+    let association =
+        Association { faces: vec![Classification::Surface(0); boundary.faces.len()], ..Association::default() };
     let elevated = elevate(&linear, Order::new(3).unwrap()).unwrap();
     let (straight, linear_nodes) = (elevated.mesh.points.clone(), elevated.linear_nodes);
     let mut mesh = elevated.mesh;
@@ -40,8 +41,15 @@ fn displacements_are_taken_back_until_every_element_is_valid() {
     let first = Proof::of(&mesh, &straight[..linear_nodes], &boundary, &association);
     assert!(!first.certificate.holds(), "the case must be broken to begin with");
     let fallback = Fallback { order: Order::LINEAR, places: straight.clone() };
-    let (shares, proof) =
-        retreat(&mut mesh, &fallback, &straight[..linear_nodes], &boundary, &association, &Ties::default(), first);
+    let (shares, proof) = retreat(
+        &mut mesh,
+        &fallback,
+        &straight[..linear_nodes],
+        &boundary,
+        &association,
+        &PeriodicConstraint::default(),
+        first,
+    );
 
     let given_up = given_up(&mesh, &boundary, &association, &shares, Order::LINEAR);
     assert!(proof.holds());
@@ -59,7 +67,8 @@ fn a_valid_mesh_is_left_alone() {
     let straight = elevated.mesh.points.clone();
     let mut mesh = elevated.mesh;
     let boundary = Boundary::new(&linear);
-    let association = Association { faces: vec![Host::Surface(0); boundary.faces.len()], ..Association::default() };
+    let association =
+        Association { faces: vec![Classification::Surface(0); boundary.faces.len()], ..Association::default() };
     let proof = Proof::of(&mesh, &straight[..elevated.linear_nodes], &boundary, &association);
     let (shares, _) = retreat(
         &mut mesh,
@@ -67,7 +76,7 @@ fn a_valid_mesh_is_left_alone() {
         &straight[..elevated.linear_nodes],
         &boundary,
         &association,
-        &Ties::default(),
+        &PeriodicConstraint::default(),
         proof,
     );
     assert!(shares.iter().all(|&share| share == 1.0) && mesh.points == straight);
@@ -77,25 +86,26 @@ fn a_valid_mesh_is_left_alone() {
 fn both_sides_of_a_periodic_pair_retreat_alike() {
     let linear = formats::read(Path::new("fixtures/periodic/sector.msh")).unwrap();
     let boundary = Boundary::new(&linear);
-    let association = Association { faces: vec![Host::Surface(0); boundary.faces.len()], ..Association::default() };
+    let association =
+        Association { faces: vec![Classification::Surface(0); boundary.faces.len()], ..Association::default() };
     let mut elevated = elevate(&linear, Order::new(2).unwrap()).unwrap();
-    let (ties, notes) = Ties::new(&mut elevated, &boundary, false);
+    let (periodic, notes) = PeriodicConstraint::new(&mut elevated, &boundary, false);
     assert!(notes.is_empty(), "{notes:?}");
-    ties.apply(&mut elevated.mesh.points);
+    periodic.apply(&mut elevated.mesh.points);
     let (straight, linear_nodes) = (elevated.mesh.points.clone(), elevated.linear_nodes);
     let mut mesh = elevated.mesh;
     // A new node of the side that leads, pushed far into the volume, and its image with it.
     let &(_, master) = mesh.periodic.iter().flat_map(|p| &p.pairs).find(|(_, m)| m.index() >= linear_nodes).unwrap();
     mesh.points[master.index()] += DVec3::splat(0.4);
-    ties.apply(&mut mesh.points);
+    periodic.apply(&mut mesh.points);
     let linear = &straight[..linear_nodes];
     let first = Proof::of(&mesh, linear, &boundary, &association);
     assert!(!first.certificate.holds(), "the case must be broken to begin with");
     let fallback = Fallback { order: Order::LINEAR, places: straight.clone() };
-    let (_, proof) = retreat(&mut mesh, &fallback, linear, &boundary, &association, &ties, first);
+    let (_, proof) = retreat(&mut mesh, &fallback, linear, &boundary, &association, &periodic, first);
     assert!(proof.holds());
     assert!(mesh.points[master.index()] != straight[master.index()] + DVec3::splat(0.4));
-    assert!(ties.farthest(&mesh.points) < 1e-14, "{:e}", ties.farthest(&mesh.points));
+    assert!(periodic.farthest(&mesh.points) < 1e-14, "{:e}", periodic.farthest(&mesh.points));
 }
 
 /// A hex over a wall that overhangs: a cubic S with control points 0, (a, h), (1 - a, -h), (1, 0), and lines normal to it of the length of
@@ -142,14 +152,17 @@ fn a_folded_wall_face_of_a_valid_element_is_taken_back() {
     }
     let boundary = Boundary::new(&linear);
     // The floor of the plate lies below it: there its normals are compared with the CAD's.
-    let association =
-        Association { faces: vec![Host::Surface(0)], surfaces: vec![surface("plate", 4)], ..Association::default() };
+    let association = Association {
+        faces: vec![Classification::Surface(0)],
+        surfaces: vec![surface("plate", 4)],
+        ..Association::default()
+    };
     let first = Proof::of(&mesh, &linear.points, &boundary, &association);
     assert!(first.certificate.holds() && first.walls.folded() == 1, "the face alone must be broken: {first:?}");
 
     let fallback = Fallback { order: Order::LINEAR, places: straight.clone() };
     let (shares, proof) =
-        retreat(&mut mesh, &fallback, &linear.points, &boundary, &association, &Ties::default(), first);
+        retreat(&mut mesh, &fallback, &linear.points, &boundary, &association, &PeriodicConstraint::default(), first);
     let given_up = given_up(&mesh, &boundary, &association, &shares, Order::LINEAR);
     assert!(proof.holds(), "{proof:?}");
     assert!(given_up.len() == 1 && given_up[0].face == 0, "{given_up:?}");
@@ -181,7 +194,7 @@ fn a_face_that_leans_as_far_as_its_wall_does_not_fold() {
     };
     let (linear, mesh) = (mesh(Order::LINEAR), mesh(order));
     let boundary = Boundary::new(&linear);
-    let on = |surfaces| Association { faces: vec![Host::Surface(0)], surfaces, ..Association::default() };
+    let on = |surfaces| Association { faces: vec![Classification::Surface(0)], surfaces, ..Association::default() };
     let walls = |association: &Association| Proof::of(&mesh, &linear.points, &boundary, association).walls;
     assert_eq!(walls(&on(vec![])).folded(), 1, "it leans too little against its linear face");
     let walls = walls(&on(vec![surface("cylinder_bl", 3)]));

@@ -1,4 +1,4 @@
-//! Claims held against the CAD: groups are made, points must lie on them, and every boundary item gets its host.
+//! Candidates held against the CAD: groups are made, points must lie on them, and every boundary item gets its classification.
 
 use std::collections::BTreeSet;
 
@@ -6,13 +6,13 @@ use cad::{Aabb, EdgeId, EntityId, Evaluation, FaceId, Group, Kind, Model, Vertex
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
-use super::fit::{check_boxes, plane_through};
-use super::{AssociateError, Association, Claimed, Claims, Curve, Host, Plane, Surface};
+use super::sizes::{check_boxes, plane_through};
+use super::{AssociateError, Association, Candidate, Candidates, Classification, Curve, Plane, Surface};
 use crate::mesh::{Boundary, EntityKey, Mesh, NodeId};
 
 /// A point this near to a CAD entity lies on it; share of the model's diagonal.
 const ON_ENTITY: f64 = 1e-6;
-/// Ties a mesh to its CAD.
+/// PeriodicConstraint a mesh to its CAD.
 ///
 /// `max_offset`, a share of the mesh's box, is how far a point may be from an entity that a trusted source names.
 ///
@@ -22,14 +22,14 @@ pub fn associate(
     mesh: &Mesh,
     boundary: &Boundary,
     model: &Model,
-    claims: &Claims,
+    candidates: &Candidates,
     max_offset: f64,
 ) -> Result<Association, AssociateError> {
-    let faces_linked = claims.sheets.iter().filter(|s| !s.entities.is_empty()).count();
+    let faces_linked = candidates.sheets.iter().filter(|s| !s.entities.is_empty()).count();
     if faces_linked == 0 {
-        return Err(AssociateError::Nothing { surfaces: claims.sheets.len(), faces: model.faces().len() });
+        return Err(AssociateError::Nothing { surfaces: candidates.sheets.len(), faces: model.faces().len() });
     }
-    check_boxes(mesh, boundary, model, claims)?;
+    check_boxes(mesh, boundary, model, candidates)?;
     let limit = max_offset * Aabb::of_points(mesh.points.iter().copied()).diagonal();
     let slack = ON_ENTITY * model.diagonal();
     let mut binder = Binder {
@@ -43,9 +43,9 @@ pub fn associate(
         known_curves: FxHashMap::default(),
         singles: FxHashMap::default(),
     };
-    binder.faces(claims)?;
-    binder.edges(claims)?;
-    binder.nodes(claims);
+    binder.faces(candidates)?;
+    binder.edges(candidates)?;
+    binder.nodes(candidates);
     Ok(binder.result)
 }
 
@@ -65,13 +65,13 @@ struct Binder<'a> {
 }
 
 impl Binder<'_> {
-    fn faces(&mut self, claims: &Claims) -> Result<(), AssociateError> {
-        self.result.faces = vec![Host::Straight; self.boundary.faces.len()];
+    fn faces(&mut self, candidates: &Candidates) -> Result<(), AssociateError> {
+        self.result.faces = vec![Classification::Straight; self.boundary.faces.len()];
         let mut linked = vec![false; self.boundary.faces.len()];
-        for sheet in claims.sheets.iter().filter(|s| !s.entities.is_empty()) {
-            let host = Host::Surface(self.surface(sheet, claims.trusted)?);
+        for sheet in candidates.sheets.iter().filter(|s| !s.entities.is_empty()) {
+            let classification = Classification::Surface(self.surface(sheet, candidates.trusted)?);
             for &face in &sheet.items {
-                self.result.faces[face] = host;
+                self.result.faces[face] = classification;
                 linked[face] = true;
             }
         }
@@ -91,7 +91,7 @@ impl Binder<'_> {
     }
 
     /// The surface of a sheet, its points held against it.
-    fn surface(&mut self, sheet: &Claimed<usize>, trusted: bool) -> Result<usize, AssociateError> {
+    fn surface(&mut self, sheet: &Candidate<usize>, trusted: bool) -> Result<usize, AssociateError> {
         let mut entities = sheet.entities.clone();
         entities.sort_unstable();
         entities.dedup();
@@ -159,8 +159,8 @@ impl Binder<'_> {
         Ok(feet[worst].distance)
     }
 
-    fn bad_group<T>(&self, claim: &Claimed<T>, cause: &dyn std::fmt::Display) -> AssociateError {
-        let label = format!("{} ({})", claim.label, names(&claim.entities));
+    fn bad_group<T>(&self, candidate: &Candidate<T>, cause: &dyn std::fmt::Display) -> AssociateError {
+        let label = format!("{} ({})", candidate.label, names(&candidate.entities));
         AssociateError::Group { label, cause: cause.to_string() }
     }
 
@@ -194,45 +194,45 @@ impl Binder<'_> {
         let places: Vec<DVec3> = nodes.iter().map(|n| self.mesh.points[n.index()]).collect();
         let entity = self.boundary.faces[patch[0]].entity;
         let what = format!("{entity}: {} faces are not tied to the CAD", patch.len());
-        let host = match plane_through(&places, self.slack) {
+        let classification = match plane_through(&places, self.slack) {
             Some(plane) => {
                 self.result.notes.push(format!("{what}; they stay in their plane"));
                 self.result.planes.push(plane);
-                Host::Plane(self.result.planes.len() - 1)
+                Classification::Plane(self.result.planes.len() - 1)
             }
             None => {
                 self.result.notes.push(format!("{what} and are not plane; they stay straight"));
-                Host::Straight
+                Classification::Straight
             }
         };
         for &face in patch {
-            self.result.faces[face] = host;
+            self.result.faces[face] = classification;
         }
     }
 
-    fn edges(&mut self, claims: &Claims) -> Result<(), AssociateError> {
-        self.result.edges = vec![Host::Straight; self.boundary.edges.len()];
+    fn edges(&mut self, candidates: &Candidates) -> Result<(), AssociateError> {
+        self.result.edges = vec![Classification::Straight; self.boundary.edges.len()];
         let mut done = vec![false; self.boundary.edges.len()];
-        for string in &claims.strings {
+        for string in &candidates.strings {
             let edges: Vec<usize> = string.items.iter().filter_map(|&ends| self.boundary.edge(ends)).collect();
-            let trusted = claims.trusted;
-            if let Some(curve) = self.claimed_curve(string, &edges, trusted)? {
+            let trusted = candidates.trusted;
+            if let Some(curve) = self.candidate_curve(string, &edges, trusted)? {
                 for edge in edges {
-                    self.result.edges[edge] = Host::Curve(curve);
+                    self.result.edges[edge] = Classification::Curve(curve);
                     done[edge] = true;
                 }
             }
         }
         for edge in (0..done.len()).filter(|&e| !done[e]) {
-            self.result.edges[edge] = self.unclaimed(edge)?;
+            self.result.edges[edge] = self.without_candidate(edge)?;
         }
         Ok(())
     }
 
-    /// The curve of a string: as claimed where its points lie there, else by the surfaces that meet in it.
-    fn claimed_curve(
+    /// The curve of a string: as candidate where its points lie there, else by the surfaces that meet in it.
+    fn candidate_curve(
         &mut self,
-        string: &Claimed<[NodeId; 2]>,
+        string: &Candidate<[NodeId; 2]>,
         edges: &[usize],
         trusted: bool,
     ) -> Result<Option<usize>, AssociateError> {
@@ -273,28 +273,29 @@ impl Binder<'_> {
         })
     }
 
-    /// The host of an edge that no string holds: that of its faces where they agree.
-    fn unclaimed(&mut self, edge: usize) -> Result<Host, AssociateError> {
-        let hosts: Vec<Host> = self.boundary.edge_faces[edge].iter().map(|&f| self.result.faces[f]).collect();
-        let Some(&first) = hosts.first() else { return Ok(Host::Straight) };
-        if hosts.iter().all(|&h| h == first) {
+    /// The classification of an edge that no string holds: that of its faces where they agree.
+    fn without_candidate(&mut self, edge: usize) -> Result<Classification, AssociateError> {
+        let classifications: Vec<Classification> =
+            self.boundary.edge_faces[edge].iter().map(|&f| self.result.faces[f]).collect();
+        let Some(&first) = classifications.first() else { return Ok(Classification::Straight) };
+        if classifications.iter().all(|&h| h == first) {
             return Ok(first);
         }
-        let surfaces: Vec<usize> = hosts.iter().filter_map(|h| surface_of(*h)).collect();
+        let surfaces: Vec<usize> = classifications.iter().filter_map(|h| surface_of(*h)).collect();
         if surfaces.is_empty() {
-            return Ok(Host::Straight);
+            return Ok(Classification::Straight);
         }
         let found = self.candidates(edge).unwrap_or_default();
         let ids: Vec<EdgeId> = found.into_iter().collect();
         match Group::of_edges(self.model, &ids) {
-            Ok(group) => Ok(Host::Curve(self.curve(ids, "edge between surfaces", group))),
+            Ok(group) => Ok(Classification::Curve(self.curve(ids, "edge between surfaces", group))),
             Err(_) => {
                 let [a, b] = self.boundary.edges[edge].map(|n| self.mesh.node_tags[n.index()]);
-                let label = |h: Option<&Host>| match h {
-                    Some(&Host::Surface(s)) => self.result.surfaces[s].label.clone(),
+                let label = |h: Option<&Classification>| match h {
+                    Some(&Classification::Surface(s)) => self.result.surfaces[s].label.clone(),
                     _ => "a patch that is not tied to the CAD".to_owned(),
                 };
-                let other = hosts.iter().find(|&&h| h != first);
+                let other = classifications.iter().find(|&&h| h != first);
                 Err(AssociateError::NoCurve { a, b, first: label(Some(&first)), second: label(other) })
             }
         }
@@ -304,7 +305,7 @@ impl Binder<'_> {
     fn candidates(&mut self, edge: usize) -> Option<BTreeSet<EdgeId>> {
         let mut nearby = BTreeSet::new();
         for &face in &self.boundary.edge_faces[edge] {
-            let Host::Surface(surface) = self.result.faces[face] else { continue };
+            let Classification::Surface(surface) = self.result.faces[face] else { continue };
             for id in self.result.surfaces[surface].group.entities().iter().filter_map(|e| face_of(*e)) {
                 nearby.extend(self.model.face(id).map_or(&[][..], |f| &f.edges).iter().copied());
             }
@@ -322,38 +323,39 @@ impl Binder<'_> {
         (!found.is_empty()).then_some(found)
     }
 
-    fn nodes(&mut self, claims: &Claims) {
-        let mut hosts: Vec<BTreeSet<Rank>> = vec![BTreeSet::new(); self.mesh.points.len()];
+    fn nodes(&mut self, candidates: &Candidates) {
+        let mut classifications: Vec<BTreeSet<Rank>> = vec![BTreeSet::new(); self.mesh.points.len()];
         for (edge, ends) in self.boundary.edges.iter().enumerate() {
             for end in ends {
-                hosts[end.index()].insert(Rank::of(self.result.edges[edge]));
+                classifications[end.index()].insert(Rank::of(self.result.edges[edge]));
             }
         }
         for (face, corners) in self.boundary.corners.iter().enumerate() {
             for corner in corners {
-                hosts[corner.index()].insert(Rank::of(self.result.faces[face]));
+                classifications[corner.index()].insert(Rank::of(self.result.faces[face]));
             }
         }
-        self.result.nodes = (0..hosts.len()).map(|n| self.lowest(&hosts[n], self.mesh.points[n])).collect();
-        for point in &claims.points {
+        self.result.nodes =
+            (0..classifications.len()).map(|n| self.lowest(&classifications[n], self.mesh.points[n])).collect();
+        for point in &candidates.points {
             let vertex = point.entities.iter().find_map(|e| vertex_of(*e)).and_then(|id| self.model.vertex(id));
             for node in &point.items {
                 let near = |v: &&cad::Vertex| v.point.distance(self.mesh.points[node.index()]) <= self.slack;
                 if let Some(vertex) = vertex.filter(near) {
-                    self.result.nodes[node.index()] = Host::Vertex(vertex.point);
+                    self.result.nodes[node.index()] = Classification::Vertex(vertex.point);
                 }
             }
         }
     }
 
-    /// The lowest of the hosts around a node.
-    fn lowest(&self, around: &BTreeSet<Rank>, x: DVec3) -> Host {
+    /// The lowest of the classifications around a node.
+    fn lowest(&self, around: &BTreeSet<Rank>, x: DVec3) -> Classification {
         let curves: Vec<usize> =
             around.iter().filter_map(|r| if let Rank::Curve(c) = r { Some(*c) } else { None }).collect();
         match curves[..] {
-            [] => around.first().map_or(Host::Free, |rank| rank.host()),
-            [only] if self.result.curves[only].group.entities().len() == 1 => Host::Curve(only),
-            [first, ..] => self.vertex(x).map_or(Host::Curve(first), Host::Vertex),
+            [] => around.first().map_or(Classification::Free, |rank| rank.classification()),
+            [only] if self.result.curves[only].group.entities().len() == 1 => Classification::Curve(only),
+            [first, ..] => self.vertex(x).map_or(Classification::Curve(first), Classification::Vertex),
         }
     }
 
@@ -365,7 +367,7 @@ impl Binder<'_> {
     }
 }
 
-/// Hosts without coordinates, lowest first: what a node at the meeting of several takes.
+/// Classifications without coordinates, lowest first: what a node at the meeting of several takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Rank {
     Curve(usize),
@@ -375,21 +377,21 @@ enum Rank {
 }
 
 impl Rank {
-    fn of(host: Host) -> Rank {
-        match host {
-            Host::Curve(c) => Rank::Curve(c),
-            Host::Surface(s) => Rank::Surface(s),
-            Host::Plane(p) => Rank::Plane(p),
-            Host::Straight | Host::Free | Host::Vertex(_) => Rank::Straight,
+    fn of(classification: Classification) -> Rank {
+        match classification {
+            Classification::Curve(c) => Rank::Curve(c),
+            Classification::Surface(s) => Rank::Surface(s),
+            Classification::Plane(p) => Rank::Plane(p),
+            Classification::Straight | Classification::Free | Classification::Vertex(_) => Rank::Straight,
         }
     }
 
-    fn host(self) -> Host {
+    fn classification(self) -> Classification {
         match self {
-            Rank::Curve(c) => Host::Curve(c),
-            Rank::Surface(s) => Host::Surface(s),
-            Rank::Plane(p) => Host::Plane(p),
-            Rank::Straight => Host::Straight,
+            Rank::Curve(c) => Classification::Curve(c),
+            Rank::Surface(s) => Classification::Surface(s),
+            Rank::Plane(p) => Classification::Plane(p),
+            Rank::Straight => Classification::Straight,
         }
     }
 }
@@ -406,8 +408,8 @@ fn vertex_of(entity: EntityId) -> Option<VertexId> {
     if let EntityId::Vertex(id) = entity { Some(id) } else { None }
 }
 
-fn surface_of(host: Host) -> Option<usize> {
-    if let Host::Surface(index) = host { Some(index) } else { None }
+fn surface_of(classification: Classification) -> Option<usize> {
+    if let Classification::Surface(index) = classification { Some(index) } else { None }
 }
 
 fn names(entities: &[EntityId]) -> String {

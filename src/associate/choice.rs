@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::Claims;
+use super::Candidates;
 use crate::mesh::{Boundary, EntityKey, Mesh};
 
 /// Patches by name: a physical name, `surface 3`, or `3`.
@@ -57,7 +57,7 @@ impl Choice {
     }
 }
 
-impl Claims {
+impl Candidates {
     /// Strikes out what is said of the faces of these patches, and of edges that have no other faces.
     pub fn leave_straight(&mut self, boundary: &Boundary, patches: &BTreeSet<EntityKey>) {
         if patches.is_empty() {

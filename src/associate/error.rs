@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// Mesh and CAD do not belong together, or not as claimed.
+/// Mesh and CAD do not belong together, or not as candidate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // the messages say it
 pub enum AssociateError {

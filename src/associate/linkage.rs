@@ -1,11 +1,11 @@
-//! The claims of a MeshLink file.
+//! The candidates of a MeshLink file.
 
 use std::path::{Path, PathBuf};
 
 use cad::{EntityId, Model, ReferenceError};
 use linkage_schema::{Document, Entity, GeometryFile, ModelLinks, Resolution};
 
-use super::{Claimed, Claims, NotPeriodic, Numbering, Part, UnknownZone, periodic_records, periodic_sheets};
+use super::{Candidate, Candidates, NotPeriodic, Numbering, Part, UnknownZone, periodic_records, periodic_sheets};
 use crate::element::Order;
 use crate::mesh::{Boundary, EntityKey, Mesh, NodeId};
 
@@ -94,7 +94,7 @@ pub fn read_linkage(
     mesh: &Mesh,
     boundary: &Boundary,
     model: &Model,
-) -> Result<Claims, LinkageError> {
+) -> Result<Candidates, LinkageError> {
     let document = linkage_schema::read_path(path)?.accept()?;
     let resolution = linkage_schema::resolve(&document).accept(path)?;
     if resolution.models.is_empty() {
@@ -110,10 +110,10 @@ pub fn read_linkage(
     let geometry = own_geometry(&document, model.path());
     let reader = Reader { path, mesh, boundary, model, numbering: &numbering, geometry: &geometry, part: Part::Whole };
     let trusted = document.geometry_files.iter().any(|file| same_file(&file.filename, model.path()));
-    let mut claims = Claims { trusted, ..Claims::default() };
-    claims.notes.extend(not_given(path, &document, &geometry));
+    let mut candidates = Candidates { trusted, ..Candidates::default() };
+    candidates.notes.extend(not_given(path, &document, &geometry));
     for links in models {
-        reader.within(links)?.model(links, &mut claims)?;
+        reader.within(links)?.model(links, &mut candidates)?;
     }
     for pair in &resolution.pairs {
         let Some(sheets) = periodic_sheets(pair, &resolution) else { continue };
@@ -122,9 +122,9 @@ pub fn read_linkage(
         };
         let records = periodic_records(pair, sheets, mesh, boundary, &node);
         let place = || reader.place(pair.linkage.origin);
-        claims.periodic.extend(records.map_err(|cause| LinkageError::Periodic { place: place(), cause })?);
+        candidates.periodic.extend(records.map_err(|cause| LinkageError::Periodic { place: place(), cause })?);
     }
-    Ok(claims)
+    Ok(candidates)
 }
 
 /// The models of a mesh file, as far as the document names that file.
@@ -175,8 +175,8 @@ impl Reader<'_> {
         Ok(Reader { part: part.map_err(|source| LinkageError::Zone { place: place(), source })?, ..self })
     }
 
-    fn model(&self, links: &ModelLinks, claims: &mut Claims) -> Result<(), LinkageError> {
-        self.named(links, claims)?;
+    fn model(&self, links: &ModelLinks, candidates: &mut Candidates) -> Result<(), LinkageError> {
+        self.named(links, candidates)?;
         for sheet in &links.sheets {
             for run in &sheet.faces {
                 let label = format!("sheet {:?}", sheet.name().unwrap_or(""));
@@ -184,7 +184,7 @@ impl Reader<'_> {
                 let faces = run.run.faces().map(|face| self.face(face, &place, &label));
                 let items = faces.collect::<Result<_, _>>()?;
                 let entities = self.entities(run.entities(), &place, &label)?;
-                push(&mut claims.sheets, Claimed { label, items, entities });
+                push(&mut candidates.sheets, Candidate { label, items, entities });
             }
         }
         for string in &links.strings {
@@ -196,7 +196,7 @@ impl Reader<'_> {
                 });
                 let items = edges.collect::<Result<_, _>>()?;
                 let entities = self.entities(run.entities(), &place, &label)?;
-                push(&mut claims.strings, Claimed { label, items, entities });
+                push(&mut candidates.strings, Candidate { label, items, entities });
             }
         }
         for point in &links.points {
@@ -205,13 +205,13 @@ impl Reader<'_> {
             let nodes = point.run.indices.iter().map(|&index| self.node(index, &place, &label));
             let items = nodes.collect::<Result<_, _>>()?;
             let entities = self.entities(point.entities(), &place, &label)?;
-            push(&mut claims.points, Claimed { label, items, entities });
+            push(&mut candidates.points, Candidate { label, items, entities });
         }
         Ok(())
     }
 
     /// Sheets and strings that are called by the names which the mesh file gives to sets of faces and edges.
-    fn named(&self, links: &ModelLinks, claims: &mut Claims) -> Result<(), LinkageError> {
+    fn named(&self, links: &ModelLinks, candidates: &mut Candidates) -> Result<(), LinkageError> {
         let unknown = |place: String, label: &str, what: &str| {
             format!("{place}: {label} calls {what} by name, which the mesh file does not have; not used")
         };
@@ -225,12 +225,12 @@ impl Reader<'_> {
                 let entities = sheet.target.as_deref().map_or(&[][..], |target| &target.entities);
                 let entities = self.entities(entities, &place, &label)?;
                 if items.is_empty() {
-                    claims.notes.push(unknown(place, &label, &format!("{name:?}")));
+                    candidates.notes.push(unknown(place, &label, &format!("{name:?}")));
                 } else {
-                    claims.sheets.push(Claimed { label, items, entities });
+                    candidates.sheets.push(Candidate { label, items, entities });
                 }
             } else if !sheet.named.is_empty() {
-                claims.notes.push(unknown(place, &label, "faces"));
+                candidates.notes.push(unknown(place, &label, "faces"));
             }
         }
         for string in &links.strings {
@@ -243,12 +243,12 @@ impl Reader<'_> {
                 let entities = string.target.as_deref().map_or(&[][..], |target| &target.entities);
                 let entities = self.entities(entities, &place, &label)?;
                 if items.is_empty() {
-                    claims.notes.push(unknown(place, &label, &format!("{name:?}")));
+                    candidates.notes.push(unknown(place, &label, &format!("{name:?}")));
                 } else {
-                    claims.strings.push(Claimed { label, items, entities });
+                    candidates.strings.push(Candidate { label, items, entities });
                 }
             } else if !string.named.is_empty() {
-                claims.notes.push(unknown(place, &label, "edges"));
+                candidates.notes.push(unknown(place, &label, "edges"));
             }
         }
         Ok(())
@@ -293,10 +293,12 @@ impl Reader<'_> {
     }
 }
 
-/// Appends a claim, or lengthens the last one of the same name on the same geometry.
-fn push<T>(claims: &mut Vec<Claimed<T>>, claim: Claimed<T>) {
-    match claims.last_mut() {
-        Some(last) if last.label == claim.label && last.entities == claim.entities => last.items.extend(claim.items),
-        _ => claims.push(claim),
+/// Appends a candidate, or lengthens the last one of the same name on the same geometry.
+fn push<T>(candidates: &mut Vec<Candidate<T>>, candidate: Candidate<T>) {
+    match candidates.last_mut() {
+        Some(last) if last.label == candidate.label && last.entities == candidate.entities => {
+            last.items.extend(candidate.items)
+        }
+        _ => candidates.push(candidate),
     }
 }

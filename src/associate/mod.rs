@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!  MeshLink sheets, strings, points ─┐
-//!                                    ├─ claims ── bind ──► surfaces, curves, hosts of the linear nodes
+//!                                    ├─ candidates ── bind ──► surfaces, curves, classifications of the linear nodes
 //!  entity tags of the mesh file ─────┘            (held against the CAD: do the points lie there?)
 //! ```
 //!
@@ -12,11 +12,11 @@
 //! edges differ between STEP and IGES of the same shape.
 
 mod bind;
+mod candidates;
 mod choice;
-mod claims;
+mod classify;
 mod document;
 mod error;
-mod fit;
 mod infer;
 mod joint;
 mod linkage;
@@ -24,7 +24,7 @@ mod numbering;
 mod path;
 mod periodic;
 mod side;
-mod source;
+mod sizes;
 mod summary;
 
 use glam::DVec3;
@@ -32,11 +32,11 @@ use glam::DVec3;
 use cad::Group;
 
 pub use bind::associate;
+pub use candidates::{Candidate, Candidates};
 pub use choice::{Choice, UnknownPatch};
-pub use claims::{Claimed, Claims};
+pub use classify::{Classified, ClassifyError, classify};
 pub use document::{TooLarge, Written, document};
 pub use error::AssociateError;
-pub use fit::check_boxes;
 pub use infer::{Doubt, Incidence, Inference, ON_CAD, Tolerance, infer};
 pub use joint::{Joints, SHARP, normal_at};
 pub use linkage::{LinkageError, models_of, own_geometry, read_linkage, same_file};
@@ -44,7 +44,7 @@ pub use numbering::{Numbering, Part, UnknownZone};
 pub use path::paths;
 pub use periodic::{NotPeriodic, PeriodicSheet, periodic_records, periodic_sheets};
 pub use side::{Side, sides};
-pub use source::{TieError, Tied, tie};
+pub use sizes::check_boxes;
 pub use summary::{Patch, Summary, Undecided, summary};
 
 /// A set of CAD faces that mesh faces lie on.
@@ -86,7 +86,7 @@ impl Plane {
 
 /// What holds a boundary node or the inner nodes of a boundary edge or face: the lowest entity wins.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Host {
+pub enum Classification {
     /// A node inside the volume.
     #[default]
     Free,
@@ -111,23 +111,23 @@ pub struct Association {
     pub curves: Vec<Curve>,
     /// Planes of unlinked patches.
     pub planes: Vec<Plane>,
-    /// Host of every linear node.
-    pub nodes: Vec<Host>,
-    /// Host of the inner nodes of every boundary face, by index in [`Boundary::faces`].
-    pub faces: Vec<Host>,
-    /// Host of the inner nodes of every boundary edge, by index in [`Boundary::edges`].
-    pub edges: Vec<Host>,
+    /// Classification of every linear node.
+    pub nodes: Vec<Classification>,
+    /// Classification of the inner nodes of every boundary face, by index in [`Boundary::faces`].
+    pub faces: Vec<Classification>,
+    /// Classification of the inner nodes of every boundary edge, by index in [`Boundary::edges`].
+    pub edges: Vec<Classification>,
     /// What a user should know and need not mend.
     pub notes: Vec<String>,
 }
 
 impl Association {
-    /// The plane that holds a host's nodes, if one does.
+    /// The plane that holds a classification's nodes, if one does.
     #[must_use]
-    pub fn plane_of(&self, host: Host) -> Option<Plane> {
-        match host {
-            Host::Plane(plane) => Some(self.planes[plane]),
-            Host::Surface(surface) => self.surfaces[surface].plane,
+    pub fn plane_of(&self, classification: Classification) -> Option<Plane> {
+        match classification {
+            Classification::Plane(plane) => Some(self.planes[plane]),
+            Classification::Surface(surface) => self.surfaces[surface].plane,
             _ => None,
         }
     }

@@ -7,7 +7,7 @@ use cad::{EntityId, Group, Model};
 use glam::DVec3;
 use serde::Serialize;
 
-use super::{Claims, Doubt, Inference};
+use super::{Candidates, Doubt, Inference};
 use crate::mesh::{Boundary, EntityKey, Mesh, NodeId};
 
 /// Undecided items that are listed as text.
@@ -62,14 +62,14 @@ pub struct Undecided {
     pub reason: String,
 }
 
-/// The figures of claims; `inference` is what they came from, if they were inferred.
+/// The figures of candidates; `inference` is what they came from, if they were inferred.
 #[must_use]
 pub fn summary(
     source: &str,
     mesh: &Mesh,
     boundary: &Boundary,
     model: &Model,
-    claims: &Claims,
+    candidates: &Candidates,
     inference: Option<&Inference>,
 ) -> Summary {
     let mut patches: BTreeMap<EntityKey, Patch> = BTreeMap::new();
@@ -85,7 +85,7 @@ pub fn summary(
         });
         patch.faces += 1;
     }
-    for sheet in claims.sheets.iter().filter(|sheet| !sheet.entities.is_empty()) {
+    for sheet in candidates.sheets.iter().filter(|sheet| !sheet.entities.is_empty()) {
         let target = sheet.entities.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
         let farthest = farthest_by_patch(mesh, boundary, model, &sheet.entities, &sheet.items);
         for &face in &sheet.items {
@@ -115,8 +115,8 @@ pub fn summary(
     Summary {
         source: source.to_owned(),
         patches: patches.into_values().collect(),
-        edges: claims.strings.iter().filter(|s| !s.entities.is_empty()).map(|s| s.items.len()).sum(),
-        points: claims.points.iter().filter(|p| !p.entities.is_empty()).map(|p| p.items.len()).sum(),
+        edges: candidates.strings.iter().filter(|s| !s.entities.is_empty()).map(|s| s.items.len()).sum(),
+        points: candidates.points.iter().filter(|p| !p.entities.is_empty()).map(|p| p.items.len()).sum(),
         undecided,
         notes: Vec::new(),
     }

@@ -67,7 +67,7 @@ struct Piece {
     range: Range,
     slot: usize,
     halvings: usize,
-    /// Order of creation, to break ties.
+    /// Order of creation, to break periodic.
     serial: usize,
 }
 

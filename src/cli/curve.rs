@@ -27,7 +27,7 @@ pub(super) struct Options {
     /// The CAD it was made on: STEP, IGES or BREP
     #[arg(long, value_name = "FILE")]
     cad: PathBuf,
-    /// MeshLink file that ties mesh and CAD together; without it the mesh's entity tags do, or else geometry
+    /// MeshLink file that periodic mesh and CAD together; without it the mesh's entity tags do, or else geometry
     #[arg(long, value_name = "LINK.xml")]
     linkage: Option<PathBuf>,
     /// Polynomial order of the curved mesh: 2, 3 or 4

@@ -8,7 +8,7 @@ use clap::Args;
 use super::curve::positive;
 use super::reading::Reading;
 use super::{DONE, Failure, print, write_json};
-use crate::associate::{self, AssociateError, Claims, Inference, Tolerance, associate, infer};
+use crate::associate::{self, AssociateError, Candidates, Inference, Tolerance, associate, infer};
 use crate::formats;
 use crate::mesh::{Boundary, Mesh};
 use crate::validate::read_linear;
@@ -53,20 +53,20 @@ struct Nothing {
     hint: String,
 }
 
-/// Ties a mesh to its CAD and writes the linkage.
+/// PeriodicConstraint a mesh to its CAD and writes the linkage.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     formats::check_folder(&options.output)?;
     let mesh = read_linear(&options.mesh)?;
     let boundary = Boundary::new(&mesh);
     let reading = options.reading.options();
     let mut model = Model::read(&options.cad, &reading)?;
-    let mut tied = tie(options, &mesh, &boundary, &model);
-    if let (true, None, Some(scale)) = (tied.claims.sheets.is_empty(), options.reading.scale(), tied.factor) {
+    let mut tied = classify(options, &mesh, &boundary, &model);
+    if let (true, None, Some(scale)) = (tied.candidates.sheets.is_empty(), options.reading.scale(), tied.factor) {
         model = Model::read(&options.cad, &ReadOptions { scale, ..reading })?;
-        tied = tie(options, &mesh, &boundary, &model);
+        tied = classify(options, &mesh, &boundary, &model);
     }
-    let Tied { claims, inference, source, factor } = tied;
-    if claims.sheets.is_empty() {
+    let Classified { candidates, inference, source, factor } = tied;
+    if candidates.sheets.is_empty() {
         let hint = factor.map_or_else(
             || "are both in one unit and place? If the mesh is off its CAD, raise --tolerance".to_owned(),
             |factor| format!("if the CAD is in another unit, give --cad-scale {factor} (or --cad-scale auto)"),
@@ -79,11 +79,11 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
             hint,
         }));
     }
-    let written = associate::document(&claims, &mesh, &boundary, &model, &options.mesh)?;
+    let written = associate::document(&candidates, &mesh, &boundary, &model, &options.mesh)?;
     let mut text = Vec::new();
     linkage_schema::write(&written.document, &mut text)?;
     formats::write_bytes(&options.output, &text)?;
-    let mut summary = associate::summary(source, &mesh, &boundary, &model, &claims, inference.as_ref());
+    let mut summary = associate::summary(source, &mesh, &boundary, &model, &candidates, inference.as_ref());
     summary.notes.extend(mesh.notes.iter().cloned().chain(model.losses()).chain(written.notes));
     if let Some(path) = &options.report {
         write_json(path, &summary)?;
@@ -93,8 +93,8 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
 }
 
 /// What lies on what.
-struct Tied {
-    claims: Claims,
+struct Classified {
+    candidates: Candidates,
     inference: Option<Inference>,
     source: &'static str,
     /// The factor between units by which CAD and mesh differ.
@@ -102,19 +102,24 @@ struct Tied {
 }
 
 /// By the mesh's tags where they hold, else by geometry.
-fn tie(options: &Options, mesh: &Mesh, boundary: &Boundary, model: &Model) -> Tied {
+fn classify(options: &Options, mesh: &Mesh, boundary: &Boundary, model: &Model) -> Classified {
     let mut factor = cad::unit_factor(size_of(mesh), model.diagonal());
     if !options.ignore_tags {
-        let claims = Claims::by_tags(mesh, boundary, model);
-        match associate(mesh, boundary, model, &claims, MAX_OFFSET) {
-            Ok(_) => return Tied { claims, inference: None, source: "the mesh's entity tags", factor: None },
+        let candidates = Candidates::by_tags(mesh, boundary, model);
+        match associate(mesh, boundary, model, &candidates, MAX_OFFSET) {
+            Ok(_) => return Classified { candidates, inference: None, source: "the mesh's entity tags", factor: None },
             Err(AssociateError::Scale { factor: own, .. }) => factor = Some(own),
             Err(_) => {}
         }
     }
     let tolerance = options.tolerance.map_or_else(|| Tolerance::of(mesh), Tolerance::fixed);
     let mut inference = infer(mesh, boundary, model, &tolerance);
-    Tied { claims: std::mem::take(&mut inference.claims), inference: Some(inference), source: "geometry", factor }
+    Classified {
+        candidates: std::mem::take(&mut inference.candidates),
+        inference: Some(inference),
+        source: "geometry",
+        factor,
+    }
 }
 
 fn size_of(mesh: &Mesh) -> f64 {

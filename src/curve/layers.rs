@@ -5,34 +5,34 @@ use std::num::NonZeroUsize;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::associate::{Association, Host};
-use crate::curve::periodic::Ties;
+use crate::associate::{Association, Classification};
+use crate::curve::periodic::PeriodicConstraint;
 use crate::curve::wall::Projected;
 use crate::mesh::elevate::Elevated;
 use crate::mesh::{Boundary, Mesh, NodeId};
 
 /// Keeps all elements straight that lie beyond so many layers of elements off the curved walls. The first layer are the
 /// elements that touch a curved wall, each next one those that touch a node of the layers before it. The nodes of the
-/// elements beyond get the host [`Host::Straight`], and the displacement ends before them ([`Projected::beyond`]).
+/// elements beyond get the classification [`Classification::Straight`], and the displacement ends before them ([`Projected::beyond`]).
 pub fn leave_straight_beyond(
     layers: NonZeroUsize,
     elevated: &Elevated,
     boundary: &Boundary,
     association: &Association,
-    ties: &Ties,
+    periodic: &PeriodicConstraint,
     projected: &mut Projected,
 ) {
     let mesh = &elevated.mesh;
     let mut near = vec![false; mesh.points.len()];
-    for (host, corners) in association.faces.iter().zip(&boundary.corners) {
-        if matches!(host, Host::Surface(_)) && association.plane_of(*host).is_none() {
+    for (classification, corners) in association.faces.iter().zip(&boundary.corners) {
+        if matches!(classification, Classification::Surface(_)) && association.plane_of(*classification).is_none() {
             corners.iter().for_each(|n| near[n.index()] = true);
         }
     }
     let elements: Vec<&[NodeId]> = mesh.blocks_of(3).flat_map(|(_, block)| block.elements(mesh.order)).collect();
     let mut within = vec![false; elements.len()];
     for _ in 0..layers.get() {
-        ties.spread(&mut near);
+        periodic.spread(&mut near);
         for (within, nodes) in within.iter_mut().zip(&elements) {
             *within |= nodes.iter().any(|n| near[n.index()]);
         }
@@ -42,11 +42,11 @@ pub fn leave_straight_beyond(
     let mut held = vec![false; mesh.points.len()];
     let beyond = elements.iter().zip(&within).filter(|(_, within)| !**within);
     beyond.flat_map(|(nodes, _)| *nodes).for_each(|n| held[n.index()] = true);
-    ties.spread(&mut held);
-    projected.hosts.resize(held.len(), Host::Free);
+    periodic.spread(&mut held);
+    projected.classifications.resize(held.len(), Classification::Free);
     projected.displacement.resize(held.len(), DVec3::ZERO);
     for n in (0..held.len()).filter(|&n| held[n]) {
-        projected.hosts[n] = Host::Straight;
+        projected.classifications[n] = Classification::Straight;
         projected.displacement[n] = DVec3::ZERO;
     }
     held.truncate(elevated.linear_nodes);

@@ -17,7 +17,7 @@
 //! | costs of the elements: 32 a tet | 24 |
 //! | proven minima: `f64` a tet | 6 |
 //! | elements around the corners, for turning angles: 4 x `u32` a tet | 12 |
-//! | boundary: hosts, displacements, association | 8 |
+//! | boundary: classifications, displacements, association | 8 |
 //! | CAD, code, allocator | 23 |
 //!
 //! At P3 and P4 the mesh of the order below is kept as well, as far as it takes to go on from it: places and nodes of the elements.
@@ -42,7 +42,7 @@ use std::time::Instant;
 use cad::{Model, ReadOptions};
 use glam::DVec3;
 
-use crate::associate::{self, AssociateError, Association, Choice, LinkageError, Summary, TieError, UnknownPatch};
+use crate::associate::{self, AssociateError, Association, Choice, ClassifyError, LinkageError, Summary, UnknownPatch};
 use crate::certify::{self, Certificate, Walls};
 use crate::curve::checkpoint::{CheckpointError, Work};
 pub use crate::curve::orders::LowerOrder;
@@ -67,7 +67,7 @@ pub struct Job {
     pub mesh: PathBuf,
     /// The CAD it was made on.
     pub cad: PathBuf,
-    /// The MeshLink file that ties the two together; without it the mesh's entity tags do, or else geometry.
+    /// The MeshLink file that periodic the two together; without it the mesh's entity tags do, or else geometry.
     pub linkage: Option<PathBuf>,
     /// Which patches are curved.
     pub patches: Choice,
@@ -229,7 +229,7 @@ pub struct Curved {
     pub association: Association,
     /// The linear mesh's two-dimensional elements.
     pub boundary: Boundary,
-    /// Hosts, displacements and counts of the projection.
+    /// Classifications, displacements and counts of the projection.
     pub projected: Projected,
     /// What the smoother did at the orders below.
     pub lower_orders: Vec<LowerOrder>,
@@ -264,11 +264,11 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
 
     clock.step(Step::Associate);
     let boundary = Boundary::new(&linear);
-    let (tied, cad) = tie(job, &linear, &boundary, model)?;
+    let (tied, cad) = classify(job, &linear, &boundary, model)?;
     let mut association = tied.association;
     // The linkage file may know of pairs that the mesh file does not.
     let known: Vec<_> = linear.periodic.iter().map(|pair| pair.slave).collect();
-    linear.periodic.extend(tied.claims.periodic.into_iter().filter(|pair| !known.contains(&pair.slave)));
+    linear.periodic.extend(tied.candidates.periodic.into_iter().filter(|pair| !known.contains(&pair.slave)));
 
     let ascent = Ascent::new(job, linear, &boundary, &association)?;
     let Climb { level, mut below, lower_orders } = ascent.climb(&mut clock)?;
@@ -307,9 +307,9 @@ pub fn curve(job: &Job, observer: &mut dyn Observer) -> Result<Curved, PipelineE
 pub fn association(job: &Job) -> Result<Summary, PipelineError> {
     let linear = read_linear(&job.mesh)?;
     let boundary = Boundary::new(&linear);
-    let (tied, cad) = tie(job, &linear, &boundary, read_model(job)?)?;
+    let (tied, cad) = classify(job, &linear, &boundary, read_model(job)?)?;
     let mut summary =
-        associate::summary(&tied.source, &linear, &boundary, &cad.model, &tied.claims, tied.inference.as_ref());
+        associate::summary(&tied.source, &linear, &boundary, &cad.model, &tied.candidates, tied.inference.as_ref());
     summary.notes = linear.notes.iter().cloned().chain(tied.association.notes).collect();
     Ok(summary)
 }
@@ -348,16 +348,21 @@ fn scaled(job: &Job, scale: f64) -> ReadOptions {
     ReadOptions { scale, ..job.reading.clone() }
 }
 
-/// Ties the mesh to its CAD, read again in another unit where the job asks for the unit that fits.
-fn tie(job: &Job, linear: &Mesh, boundary: &Boundary, model: Model) -> Result<(associate::Tied, Cad), PipelineError> {
+/// PeriodicConstraint the mesh to its CAD, read again in another unit where the job asks for the unit that fits.
+fn classify(
+    job: &Job,
+    linear: &Mesh,
+    boundary: &Boundary,
+    model: Model,
+) -> Result<(associate::Classified, Cad), PipelineError> {
     let straight = job.patches.straight(linear, boundary);
     let straight = straight.map_err(|cause| PipelineError::UnknownPatch { mesh: job.mesh.clone(), cause })?;
-    let attempt = |model: &Model| -> Result<associate::Tied, PipelineError> {
-        let choose = |claims: &mut associate::Claims| claims.leave_straight(boundary, &straight);
+    let attempt = |model: &Model| -> Result<associate::Classified, PipelineError> {
+        let choose = |candidates: &mut associate::Candidates| candidates.leave_straight(boundary, &straight);
         let linkage = job.linkage.as_deref().map(|path| [path, &job.mesh]);
-        associate::tie(linkage, linear, boundary, model, job.max_offset, &choose).map_err(|error| match error {
-            TieError::Linkage(error) => error.into(),
-            TieError::Associate(cause) => refused(&job.mesh, &job.cad, cause),
+        associate::classify(linkage, linear, boundary, model, job.max_offset, &choose).map_err(|error| match error {
+            ClassifyError::Linkage(error) => error.into(),
+            ClassifyError::Associate(cause) => refused(&job.mesh, &job.cad, cause),
         })
     };
     let first = attempt(&model);

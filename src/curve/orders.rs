@@ -24,10 +24,10 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::associate::{Association, Host};
+use crate::associate::{Association, Classification};
 use crate::curve::checkpoint::{CheckpointError, Found};
 use crate::curve::layers::leave_straight_beyond;
-use crate::curve::periodic::Ties;
+use crate::curve::periodic::PeriodicConstraint;
 use crate::curve::perturb::perturb;
 use crate::curve::recover::Ladder;
 use crate::curve::wall::fit::fit;
@@ -61,7 +61,7 @@ pub struct LowerOrder {
 /// The straight mesh at one order, and where its boundary goes.
 pub(crate) struct Ready {
     pub(crate) elevated: Elevated,
-    pub(crate) ties: Ties,
+    pub(crate) periodic: PeriodicConstraint,
     pub(crate) projected: Projected,
     /// What there is to tell of the periodic pairs.
     pub(crate) notes: Vec<String>,
@@ -232,16 +232,16 @@ impl<'a> Ascent<'a> {
         clock.step(Step::Elevate);
         let too_many = |cause| PipelineError::TooMany { mesh: job.mesh.clone(), cause };
         let mut elevated = elevate(&self.linear, order).map_err(too_many)?;
-        let (ties, notes) = Ties::new(&mut elevated, self.boundary, job.freeze_linear);
+        let (periodic, notes) = PeriodicConstraint::new(&mut elevated, self.boundary, job.freeze_linear);
 
         clock.step(Step::Project);
         let mut projected = project(&elevated, self.boundary, self.association, job.freeze_linear);
-        ties.carry(&elevated.mesh.points, &mut projected.displacement);
-        fit(&elevated, self.boundary, self.association, &ties, &mut projected);
+        periodic.carry(&elevated.mesh.points, &mut projected.displacement);
+        fit(&elevated, self.boundary, self.association, &periodic, &mut projected);
         if let Some(layers) = job.curve_layers {
-            leave_straight_beyond(layers, &elevated, self.boundary, self.association, &ties, &mut projected);
+            leave_straight_beyond(layers, &elevated, self.boundary, self.association, &periodic, &mut projected);
         }
-        Ok(Ready { elevated, ties, projected, notes })
+        Ok(Ready { elevated, periodic, projected, notes })
     }
 
     /// Carries the volume along and smooths, or goes on from the checkpoint.
@@ -258,7 +258,7 @@ impl<'a> Ascent<'a> {
             self.association,
             straight,
             &ready.projected,
-            &ready.ties,
+            &ready.periodic,
             ready.elevated.linear_nodes,
             self.job.freeze_walls,
             self.job.freeze_linear,
@@ -271,31 +271,31 @@ impl<'a> Ascent<'a> {
 
     /// Where the nodes are before the first sweep.
     fn start(&self, ready: &Ready, below: Option<&Below>) -> Vec<DVec3> {
-        let Ready { elevated, ties, projected, .. } = ready;
-        let carried = |projected: &Projected| perturb(elevated, self.boundary, self.association, projected, ties);
+        let Ready { elevated, periodic, projected, .. } = ready;
+        let carried = |projected: &Projected| perturb(elevated, self.boundary, self.association, projected, periodic);
         let Some(below) = below else {
             let mut places = carried(projected);
-            ties.apply(&mut places);
+            periodic.apply(&mut places);
             return places;
         };
         let raised = below.raised(&elevated.mesh);
         let mut rest = projected.clone();
         rest.displacement.par_iter_mut().zip(&raised).enumerate().for_each(|(n, (displacement, raised))| {
-            let in_plane = self.association.plane_of(projected.host(n)).is_some();
+            let in_plane = self.association.plane_of(projected.classification(n)).is_some();
             *displacement = if in_plane { DVec3::ZERO } else { *displacement - *raised };
         });
         let mut places = carried(&rest);
         places.par_iter_mut().zip(&raised).enumerate().for_each(|(n, (place, raised))| {
-            let host = projected.host(n);
+            let classification = projected.classification(n);
             let held = self.job.freeze_linear && n < elevated.linear_nodes;
-            let plane = self.association.plane_of(host).filter(|_| !held);
-            *place = match (host, plane) {
-                (Host::Free, _) => *place + *raised,
+            let plane = self.association.plane_of(classification).filter(|_| !held);
+            *place = match (classification, plane) {
+                (Classification::Free, _) => *place + *raised,
                 (_, Some(plane)) => plane.closest(*place + *raised),
                 (_, None) => elevated.mesh.points[n] + projected.displacement[n],
             };
         });
-        ties.apply(&mut places);
+        periodic.apply(&mut places);
         places
     }
 }

@@ -15,16 +15,16 @@ use crate::smooth::Image;
 
 /// Nodes that are images of others.
 #[derive(Clone, Debug, Default)]
-pub struct Ties {
+pub struct PeriodicConstraint {
     images: Vec<Image>,
 }
 
-impl Ties {
-    /// The ties of an elevated mesh, whose periodic pairs are extended to the new nodes. With `freeze_linear` linear nodes are not tied.
+impl PeriodicConstraint {
+    /// The periodic of an elevated mesh, whose periodic pairs are extended to the new nodes. With `freeze_linear` linear nodes are not tied.
     ///
     /// Returns what a user should know of pairs that are none.
     #[must_use]
-    pub fn new(elevated: &mut Elevated, boundary: &Boundary, freeze_linear: bool) -> (Ties, Vec<String>) {
+    pub fn new(elevated: &mut Elevated, boundary: &Boundary, freeze_linear: bool) -> (PeriodicConstraint, Vec<String>) {
         let mut notes = Vec::new();
         let mut leads: BTreeMap<NodeId, (NodeId, DAffine3)> = BTreeMap::new();
         let mut records = std::mem::take(&mut elevated.mesh.periodic);
@@ -49,7 +49,7 @@ impl Ties {
         elevated.mesh.periodic = records;
         let images: Vec<_> = leads.keys().map(|&slave| (slave, root(&leads, slave))).collect();
         let images = images.into_iter().map(|(node, (of, map))| Image { node, of, map }).collect();
-        (Ties { images }, notes)
+        (PeriodicConstraint { images }, notes)
     }
 
     /// All nodes that are images of others.

@@ -4,7 +4,7 @@ use cad::Group;
 use glam::DVec3;
 use rustc_hash::FxHashSet;
 
-use crate::associate::{Association, Host, normal_at};
+use crate::associate::{Association, Classification, normal_at};
 use crate::certify::{self, Certificate, WallFace, Walls};
 use crate::element::{Cell, Order, Samples, basis};
 use crate::mesh::{Boundary, Mesh, NodeId};
@@ -56,7 +56,7 @@ pub(crate) fn walls(
     association: &Association,
     asked: impl Fn(usize) -> bool,
 ) -> Walls {
-    let tied = |f: usize| matches!(association.faces[f], Host::Surface(_));
+    let tied = |f: usize| matches!(association.faces[f], Classification::Surface(_));
     let numbers: Vec<usize> = (0..boundary.faces.len()).filter(|&f| tied(f) && asked(f)).collect();
     let face = |f: usize| {
         let own = &boundary.faces[f];
@@ -65,7 +65,7 @@ pub(crate) fn walls(
         WallFace { cell: own.cell, order: mesh.order, points, corners }
     };
     let other = |f: usize| {
-        let Host::Surface(surface) = association.faces[f] else { return None };
+        let Classification::Surface(surface) = association.faces[f] else { return None };
         axis(mesh, boundary, f, &association.surfaces.get(surface)?.group)
     };
     certify::walls(&numbers, face, other, &certify::Settings::default())

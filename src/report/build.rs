@@ -9,7 +9,7 @@ use super::{
     CellReport, CertificateReport, GivenUpFace, Input, Nodes, PatchReport, Projections, Report, SCHEMA,
     SmoothingReport, StepReport, TurningReport, WallFailure, WallReport, WorstElement,
 };
-use crate::associate::Host;
+use crate::associate::Classification;
 use crate::certify::{Certificate, FaceFinding, Judged, Verdict};
 use crate::curve::layers::straight_elements;
 use crate::curve::recover::backtrack::GivenUp;
@@ -28,7 +28,7 @@ const DISTANCE_DENSITY: usize = 3;
 #[must_use]
 pub fn report(job: &Job, curved: &Curved) -> Report {
     let mesh = &curved.mesh;
-    let linked = |host: &Host| matches!(host, Host::Surface(_));
+    let linked = |classification: &Classification| matches!(classification, Classification::Surface(_));
     let (turning, (cells, patches)) =
         rayon::join(|| turning(curved), || rayon::join(|| cells(curved), || patches(curved)));
     Report {
@@ -124,9 +124,11 @@ fn patches(curved: &Curved) -> Vec<PatchReport> {
 fn patch(curved: &Curved, entity: EntityKey) -> PatchReport {
     let faces: Vec<usize> =
         (0..curved.boundary.faces.len()).filter(|&f| curved.boundary.faces[f].entity == entity).collect();
-    let host = |&f: &usize| curved.association.faces[f];
-    let on: BTreeSet<usize> =
-        faces.iter().filter_map(|f| if let Host::Surface(s) = host(f) { Some(s) } else { None }).collect();
+    let classification = |&f: &usize| curved.association.faces[f];
+    let on: BTreeSet<usize> = faces
+        .iter()
+        .filter_map(|f| if let Classification::Surface(s) = classification(f) { Some(s) } else { None })
+        .collect();
     let distances: Vec<f64> = faces.par_iter().filter_map(|&f| distance(curved, f)).collect();
     let corners = faces.iter().flat_map(|&f| &curved.boundary.corners[f]);
     PatchReport {
@@ -141,7 +143,7 @@ fn patch(curved: &Curved, entity: EntityKey) -> PatchReport {
 
 /// The farthest point of a boundary face from the CAD surface that it is tied to.
 fn distance(curved: &Curved, face: usize) -> Option<f64> {
-    let Host::Surface(surface) = curved.association.faces[face] else { return None };
+    let Classification::Surface(surface) = curved.association.faces[face] else { return None };
     let group = &curved.association.surfaces[surface].group;
     let (order, cell) = (curved.mesh.order, curved.boundary.faces[face].cell);
     let nodes = curved.boundary.nodes(face, &curved.mesh);

@@ -118,7 +118,7 @@ impl<'a> State<'a> {
 
     /// An image `y = R x + t` moves with its original `x` alone, which takes its derivatives: `R^T g` and `R^T H R`.
     fn gather_images(&mut self) {
-        for &(image, of, map) in &self.objective.patch.ties {
+        for &(image, of, map) in &self.objective.patch.periodic {
             let NodeDerivative { gradient, hessian } =
                 std::mem::replace(&mut self.derivatives[image], NodeDerivative::ZERO);
             let (turn, back) = (map.matrix3, map.matrix3.transpose());
@@ -186,7 +186,8 @@ impl<'a> State<'a> {
                 }
             })
             .collect();
-        for &(image, of, map) in self.objective.patch.ties.iter().filter(|(_, of, _)| self.objective.patch.movable[*of])
+        for &(image, of, map) in
+            self.objective.patch.periodic.iter().filter(|(_, of, _)| self.objective.patch.movable[*of])
         {
             moved[image] = map.transform_point3(moved[of]);
         }

@@ -182,7 +182,7 @@ fn active(objective: &Objective, costs: &[(f64, DVec3)], threshold: f64) -> Vec<
             }
         }
     }
-    for &(image, of, _) in &patch.ties {
+    for &(image, of, _) in &patch.periodic {
         (active[image], active[of]) = (false, false);
     }
     active

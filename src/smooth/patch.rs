@@ -32,7 +32,7 @@ pub(super) struct Patch {
     /// Whether all elements around the node, and around its images, are in the patch, so that it may move.
     pub(super) movable: Vec<bool>,
     /// Nodes that are images of others, those others, and the maps.
-    pub(super) ties: Vec<(usize, usize, DAffine3)>,
+    pub(super) periodic: Vec<(usize, usize, DAffine3)>,
     /// For each node the range in `incident`.
     starts: Vec<u32>,
     /// Slots by node, rising.
@@ -67,9 +67,9 @@ impl Patch {
         let (starts, incident) = incidence(&slots, nodes.len());
         let complete = |i: usize| (starts[i + 1] - starts[i]) as usize == problem.valence(nodes[i]);
         let mut movable: Vec<bool> = (0..nodes.len()).map(complete).collect();
-        let ties = ties(images, &local, &mut movable);
+        let periodic = periodic(images, &local, &mut movable);
         let targets = nodes.iter().map(|n| problem.straight[n.index()]).collect();
-        Patch { elements, runs, slots, nodes, movable, ties, starts, incident, targets }
+        Patch { elements, runs, slots, nodes, movable, periodic, starts, incident, targets }
     }
 
     /// Slots of a node's appearances in elements, rising.
@@ -79,7 +79,7 @@ impl Patch {
 }
 
 /// The images among the patch's nodes, by `local` number; a node moves only where all that move with it can.
-fn ties(images: &[Image], local: &[u32], movable: &mut [bool]) -> Vec<(usize, usize, DAffine3)> {
+fn periodic(images: &[Image], local: &[u32], movable: &mut [bool]) -> Vec<(usize, usize, DAffine3)> {
     let own = |node: NodeId| Some(local[node.index()]).filter(|&n| n != u32::MAX).map(|n| n as usize);
     let found: Vec<_> = images.iter().map(|image| (own(image.node), own(image.of), image.map)).collect();
     for _ in 0..2 {

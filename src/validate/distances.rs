@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::called;
 use super::linked_mesh::LinkedMesh;
 use super::references::Geometry;
-use crate::associate::{AssociateError, Claimed, Claims, check_boxes};
+use crate::associate::{AssociateError, Candidate, Candidates, check_boxes};
 use crate::mesh::NodeId;
 
 /// The distances of one run of faces, edges or points.
@@ -69,19 +69,19 @@ fn misfit(
     model: &Model,
     geometry: &Geometry,
 ) -> Option<AssociateError> {
-    let mut claims = Claims::default();
+    let mut candidates = Candidates::default();
     for links in models {
         let linked = linked.within(links.model);
         for link in links.sheets.iter().flat_map(|sheet| &sheet.faces) {
             let items: Vec<usize> = link.run.faces().filter_map(|face| linked.face(face)).collect();
             let entities = geometry.of(link.target.as_deref());
             if !items.is_empty() && !entities.is_empty() {
-                claims.sheets.push(Claimed { label: String::new(), items, entities });
+                candidates.sheets.push(Candidate { label: String::new(), items, entities });
             }
         }
     }
-    let error =
-        (!claims.sheets.is_empty()).then(|| check_boxes(linked.mesh, linked.boundary, model, &claims).err())??;
+    let error = (!candidates.sheets.is_empty())
+        .then(|| check_boxes(linked.mesh, linked.boundary, model, &candidates).err())??;
     matches!(error, AssociateError::Scale { .. } | AssociateError::Size { .. } | AssociateError::Place { .. })
         .then_some(error)
 }

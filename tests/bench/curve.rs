@@ -37,10 +37,10 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-fn row(order: Order) -> Result<(), pipeline::PipelineError> {
+fn row(order: Order) -> Result<(), curve::PipelineError> {
     let case = |ending: &str| PathBuf::from(format!("{}/fixtures/weeble/weeble.{ending}", env!("CARGO_MANIFEST_DIR")));
     let job = Job::new(case("msh"), case("step"), Some(case("meshlink.xml")), order);
-    let curved = pipeline::curve(&job, &mut Silent)?;
+    let curved = curve::curve(&job, &mut Silent)?;
     let total: f64 = curved.seconds.iter().map(|(_, s)| s).sum();
     let of = |step: Step| curved.seconds.iter().filter(|(s, _)| *s == step).map(|(_, t)| t).sum::<f64>();
     let (nodes, sweeps) = (curved.mesh.points.len(), curved.smoothed.sweeps);

@@ -96,7 +96,7 @@ fn linkage(mesh: &Mesh) -> String {
     )
 }
 
-/// Ties the layers of a section to their sides and projects them at every order: wall nodes, and those that are not on their side.
+/// PeriodicConstraint the layers of a section to their sides and projects them at every order: wall nodes, and those that are not on their side.
 fn project(section: &Section, folder: &Path) -> (usize, usize) {
     let [cad, link] = ["section.igs", "link.xml"].map(|name| folder.join(name));
     std::fs::write(&cad, iges::file(&section.patches())).unwrap();
@@ -108,8 +108,8 @@ fn project(section: &Section, folder: &Path) -> (usize, usize) {
     let linear = layer.mesh();
     std::fs::write(&link, linkage(&linear)).unwrap();
     let boundary = Boundary::new(&linear);
-    let claims = associate::read_linkage(&link, "layers.msh".as_ref(), &linear, &boundary, &model).unwrap();
-    let association = associate::associate(&linear, &boundary, &model, &claims, 1e-3).unwrap();
+    let candidates = associate::read_linkage(&link, "layers.msh".as_ref(), &linear, &boundary, &model).unwrap();
+    let association = associate::associate(&linear, &boundary, &model, &candidates, 1e-3).unwrap();
     let (mut nodes, mut astray) = (0, 0);
     for (p, (tag, face)) in ORDERS.into_iter().flat_map(|p| [(p, (1, 0)), (p, (2, 1))]) {
         let elevated = elevate(&linear, Order::new(p).unwrap()).unwrap();

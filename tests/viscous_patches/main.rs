@@ -69,7 +69,7 @@ fn shared_equally(outcomes: &[Outcome], parts: usize, what: &str, part: impl Fn(
     assert_eq!((fewest * parts, most * parts), (outcomes.len(), outcomes.len()), "{what}: {counts:?}");
 }
 
-/// The shares that the claim is made for.
+/// The shares that the candidate is made for.
 fn shares(outcomes: &[Outcome]) {
     assert!(outcomes.len() >= PATCHES);
     let kind = |o: &Outcome| Kind::ALL.iter().position(|&k| k == o.case.kind).unwrap();

@@ -31,7 +31,7 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Draws a patch, curves it and holds it against the claims; its files go to `folder`.
+    /// Draws a patch, curves it and holds it against the candidates; its files go to `folder`.
     pub fn of(case: Case, folder: &Path) -> Outcome {
         let patch = Patch::draw(&case);
         let [cad, mesh] = files(&case, folder);

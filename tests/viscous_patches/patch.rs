@@ -10,8 +10,8 @@ use sagitta::mesh::{Block, EntityKey, Mesh, NodeId};
 
 use crate::case::Case;
 use crate::cells::Cells;
-use crate::curve::layers::{extrude, heights};
 use crate::iges;
+use crate::layers::{extrude, heights};
 use crate::random::Random;
 use crate::surface::{Form, Surface};
 use crate::wall::Grid;

@@ -6,7 +6,7 @@ use cad::EntityId;
 use linkage_schema::{GeometryGroup, GeometryId, GeometryReference, Origin};
 
 use super::model::{patches, union};
-use crate::associate::Claims;
+use crate::associate::Candidates;
 use crate::mesh::{Boundary, Mesh};
 
 /// The id of every entity and of every set of several that something lies on.
@@ -16,15 +16,16 @@ pub(super) struct Ids {
 }
 
 impl Ids {
-    pub(super) fn new(claims: &Claims, mesh: &Mesh, boundary: &Boundary) -> Ids {
+    pub(super) fn new(candidates: &Candidates, mesh: &Mesh, boundary: &Boundary) -> Ids {
         let mut sets: BTreeMap<Vec<EntityId>, String> = BTreeMap::new();
-        for (entity, runs) in patches(claims, boundary) {
+        for (entity, runs) in patches(candidates, boundary) {
             sets.entry(union(&runs)).or_insert_with(|| mesh.label(entity));
             for (entities, _) in runs {
                 sets.entry(entities.to_vec()).or_default();
             }
         }
-        let others = claims.strings.iter().map(|s| &s.entities).chain(claims.points.iter().map(|p| &p.entities));
+        let others =
+            candidates.strings.iter().map(|s| &s.entities).chain(candidates.points.iter().map(|p| &p.entities));
         for entities in others {
             sets.entry(entities.clone()).or_default();
         }

@@ -1,4 +1,4 @@
-//! Claims as a MeshLink document.
+//! Candidates as a MeshLink document.
 
 mod geometry;
 mod model;
@@ -9,7 +9,7 @@ use std::path::Path;
 use cad::Model;
 use linkage_schema::{Attribute, AttributeId, Document, GeometryFile, MeshFile, Origin};
 
-use super::{Claims, Numbering};
+use super::{Candidates, Numbering};
 use crate::mesh::{Boundary, Mesh};
 use geometry::Ids;
 use model::Models;
@@ -28,7 +28,7 @@ pub struct Written {
     pub notes: Vec<String>,
 }
 
-/// The document that says what the claims say.
+/// The document that says what the candidates say.
 ///
 /// One model a zone of the mesh file, whose points it counts, or one for all, which has the mesh's node numbers. One sheet a patch, on its CAD
 /// face or on the group of its CAD faces, each run of its faces on the one that holds them; one string a connected path on a CAD edge.
@@ -37,15 +37,15 @@ pub struct Written {
 /// # Errors
 /// [`TooLarge`].
 pub fn document(
-    claims: &Claims,
+    candidates: &Candidates,
     mesh: &Mesh,
     boundary: &Boundary,
     model: &Model,
     mesh_file: &Path,
 ) -> Result<Written, TooLarge> {
     let numbering = Numbering::new(mesh);
-    let ids = Ids::new(claims, mesh, boundary);
-    let models = Models::new(claims, mesh, boundary, &numbering, &ids)?;
+    let ids = Ids::new(candidates, mesh, boundary);
+    let models = Models::new(candidates, mesh, boundary, &numbering, &ids)?;
     let attribute = |number: u32, name: &str, value: String| {
         let id = AttributeId::new(number)?;
         Some(Attribute { id, name: Some(name.into()), value, origin: Origin::MADE })

@@ -11,16 +11,16 @@ use linkage_schema::{
 
 use super::TooLarge;
 use super::geometry::Ids;
-use crate::associate::{Claimed, Claims, Numbering, Part, paths};
+use crate::associate::{Candidate, Candidates, Numbering, Part, paths};
 use crate::mesh::{Boundary, EntityKey, Mesh, NodeId};
 
 /// Faces of one patch: its targets, each with its faces.
 pub(super) type Runs<'a> = Vec<(&'a [EntityId], Vec<usize>)>;
 
-/// The patches of the claims, each with its runs.
-pub(super) fn patches<'a>(claims: &'a Claims, boundary: &Boundary) -> BTreeMap<EntityKey, Runs<'a>> {
+/// The patches of the candidates, each with its runs.
+pub(super) fn patches<'a>(candidates: &'a Candidates, boundary: &Boundary) -> BTreeMap<EntityKey, Runs<'a>> {
     let mut patches: BTreeMap<EntityKey, Runs<'a>> = BTreeMap::new();
-    for sheet in claims.sheets.iter().filter(|sheet| !sheet.entities.is_empty()) {
+    for sheet in candidates.sheets.iter().filter(|sheet| !sheet.entities.is_empty()) {
         for &face in &sheet.items {
             push(patches.entry(boundary.faces[face].entity).or_default(), &sheet.entities, face);
         }
@@ -53,14 +53,14 @@ pub(super) struct Models {
 
 impl Models {
     pub(super) fn new(
-        claims: &Claims,
+        candidates: &Candidates,
         mesh: &Mesh,
         boundary: &Boundary,
         numbering: &Numbering<'_>,
         ids: &Ids,
     ) -> Result<Models, TooLarge> {
         let writer = Writer { mesh, boundary, numbering, ids };
-        let sheets = writer.named_sheets(with_periodic(patches(claims, boundary), mesh, boundary));
+        let sheets = writer.named_sheets(with_periodic(patches(candidates, boundary), mesh, boundary));
         let mut names: BTreeMap<EntityKey, Vec<String>> = BTreeMap::new();
         for (entity, name, ..) in &sheets {
             names.entry(*entity).or_default().push(name.clone());
@@ -72,8 +72,8 @@ impl Models {
                 reference: numbering.reference(part).into(),
                 common: Common::default(),
                 sheets: own.map(|(_, name, _, runs)| writer.sheet(part, name, runs)).collect::<Result<_, _>>()?,
-                strings: writer.strings(part, claims)?,
-                points: writer.points(part, claims)?,
+                strings: writer.strings(part, candidates)?,
+                points: writer.points(part, candidates)?,
                 parameters: Vec::new(),
                 origin: Origin::MADE,
             };
@@ -172,19 +172,22 @@ impl Writer<'_> {
         })
     }
 
-    fn strings(&self, part: Part, claims: &Claims) -> Result<Vec<MeshString>, TooLarge> {
+    fn strings(&self, part: Part, candidates: &Candidates) -> Result<Vec<MeshString>, TooLarge> {
         let mut strings = Vec::new();
-        for claim in claims.strings.iter().filter(|claim| !claim.entities.is_empty()) {
+        for candidate in candidates.strings.iter().filter(|candidate| !candidate.entities.is_empty()) {
             let edges: Vec<[NodeId; 2]> =
-                claim.items.iter().copied().filter(|ends| self.part(ends) == Some(part)).collect();
+                candidate.items.iter().copied().filter(|ends| self.part(ends) == Some(part)).collect();
             let paths = paths(&edges);
             for (number, path) in paths.iter().enumerate() {
-                let name =
-                    if paths.len() > 1 { format!("{}/{}", claim.label, number + 1) } else { claim.label.clone() };
+                let name = if paths.len() > 1 {
+                    format!("{}/{}", candidate.label, number + 1)
+                } else {
+                    candidate.label.clone()
+                };
                 let indices = self.indices(part, path.iter().flatten())?;
                 let run =
                     EdgeRun { common: Common::default(), encoding: Encoding::Text, indices, origin: Origin::MADE };
-                let gref = self.ids.gref(&claim.entities);
+                let gref = self.ids.gref(&candidate.entities);
                 strings.push(MeshString {
                     common: Common { name: Some(name.into()), gref, ..Common::default() },
                     body: StringBody::Edges(vec![run]),
@@ -196,12 +199,12 @@ impl Writer<'_> {
         Ok(strings)
     }
 
-    fn points(&self, part: Part, claims: &Claims) -> Result<Vec<PointRun>, TooLarge> {
-        let linked = claims.points.iter().filter(|claim| !claim.entities.is_empty());
-        let run = |claim: &Claimed<NodeId>| {
-            let own = claim.items.iter().filter(|node| self.part(&[**node]) == Some(part));
+    fn points(&self, part: Part, candidates: &Candidates) -> Result<Vec<PointRun>, TooLarge> {
+        let linked = candidates.points.iter().filter(|candidate| !candidate.entities.is_empty());
+        let run = |candidate: &Candidate<NodeId>| {
+            let own = candidate.items.iter().filter(|node| self.part(&[**node]) == Some(part));
             Ok(PointRun {
-                common: Common { gref: self.ids.gref(&claim.entities), ..Common::default() },
+                common: Common { gref: self.ids.gref(&candidate.entities), ..Common::default() },
                 encoding: Encoding::Text,
                 indices: self.indices(part, own)?,
                 origin: Origin::MADE,

@@ -6,12 +6,12 @@ use cad::{EdgeId, EntityId, FaceId, Model, VertexId};
 
 use super::Doubt;
 use super::incidence::Incidence;
-use crate::associate::{Claimed, Joints};
+use crate::associate::{Candidate, Joints};
 use crate::mesh::{Boundary, NodeId};
 
 /// Mesh edges on CAD edges.
 pub(super) struct Strings {
-    pub(super) claims: Vec<Claimed<[NodeId; 2]>>,
+    pub(super) candidates: Vec<Candidate<[NodeId; 2]>>,
     pub(super) doubts: Vec<(usize, Doubt)>,
 }
 
@@ -21,18 +21,19 @@ pub(super) fn strings(
     model: &Model,
     joints: &Joints<'_>,
     along: &[Vec<EdgeId>],
-    hosts: &[Option<Vec<FaceId>>],
+    classifications: &[Option<Vec<FaceId>>],
 ) -> Strings {
     let mut of_edge: BTreeMap<EdgeId, Vec<[NodeId; 2]>> = BTreeMap::new();
     let mut doubts = Vec::new();
     for (edge, faces) in boundary.edge_faces.iter().enumerate() {
-        let around: BTreeSet<Option<&[FaceId]>> = faces.iter().map(|&f| hosts[f].as_deref()).collect();
+        let around: BTreeSet<Option<&[FaceId]>> = faces.iter().map(|&f| classifications[f].as_deref()).collect();
         let decided: Vec<&[FaceId]> = around.iter().copied().flatten().collect();
         if decided.is_empty() || (around.len() == 1 && faces.len() > 1) {
             continue;
         }
-        let bounds_all =
-            |id: &&EdgeId| decided.iter().all(|host| joints.faces_of(**id).iter().any(|face| host.contains(face)));
+        let bounds_all = |id: &&EdgeId| {
+            decided.iter().all(|classification| joints.faces_of(**id).iter().any(|face| classification.contains(face)))
+        };
         let real = |id: &&EdgeId| !joints.is_seam(**id);
         let found: Vec<EdgeId> = along[edge].iter().filter(bounds_all).filter(real).copied().collect();
         match (&found[..], &decided[..]) {
@@ -45,9 +46,9 @@ pub(super) fn strings(
         Some(name) if !name.is_empty() => name.to_owned(),
         _ => id.to_string(),
     };
-    let claim =
-        |(id, items): (EdgeId, Vec<[NodeId; 2]>)| Claimed { label: label(id), items, entities: vec![id.into()] };
-    Strings { claims: of_edge.into_iter().map(claim).collect(), doubts }
+    let candidate =
+        |(id, items): (EdgeId, Vec<[NodeId; 2]>)| Candidate { label: label(id), items, entities: vec![id.into()] };
+    Strings { candidates: of_edge.into_iter().map(candidate).collect(), doubts }
 }
 
 /// Nodes at the vertices of the CAD edges that strings lie on.
@@ -56,9 +57,9 @@ pub(super) fn points(
     model: &Model,
     incidence: &Incidence,
     strings: &Strings,
-) -> Vec<Claimed<NodeId>> {
+) -> Vec<Candidate<NodeId>> {
     let used: BTreeSet<VertexId> = strings
-        .claims
+        .candidates
         .iter()
         .flat_map(|string| &string.entities)
         .filter_map(|entity| if let EntityId::Edge(id) = entity { model.edge(*id) } else { None })
@@ -71,8 +72,8 @@ pub(super) fn points(
             points.entry(vertex).or_default().push(node);
         }
     }
-    let claim =
-        |(id, items): (VertexId, Vec<NodeId>)| Claimed { label: id.to_string(), items, entities: vec![id.into()] };
+    let candidate =
+        |(id, items): (VertexId, Vec<NodeId>)| Candidate { label: id.to_string(), items, entities: vec![id.into()] };
     // Two nodes at one vertex are one too many to say which is the corner.
-    points.into_iter().filter(|(_, nodes)| nodes.len() == 1).map(claim).collect()
+    points.into_iter().filter(|(_, nodes)| nodes.len() == 1).map(candidate).collect()
 }

@@ -7,7 +7,7 @@ use cad::{EdgeId, FaceId};
 use super::Doubt;
 use super::incidence::Incidence;
 use crate::associate::joint::normal_at;
-use crate::associate::{Claimed, Joints, Side};
+use crate::associate::{Candidate, Joints, Side};
 use crate::mesh::{Boundary, EntityKey, Mesh};
 
 /// A mesh face runs along a CAD face if the cosine between their normals is at least this.
@@ -19,7 +19,7 @@ const ONE_SIDE: f64 = 0.9;
 
 /// A CAD face that a mesh face may lie on.
 #[derive(Clone, Copy, Debug)]
-struct Candidate {
+struct FaceCandidate {
     face: FaceId,
     /// Whether the mesh's outward normal is that of the CAD face; `None` where the CAD has no normal.
     outward: Option<bool>,
@@ -33,11 +33,11 @@ pub(super) fn decide(
     along: &[Vec<EdgeId>],
     sides: &[Side],
 ) -> Vec<Result<FaceId, Doubt>> {
-    let mut candidates: Vec<Vec<Candidate>> =
+    let mut candidates: Vec<Vec<FaceCandidate>> =
         (0..boundary.faces.len()).map(|f| candidates(f, boundary, joints, incidence, &sides[f])).collect();
     strike_wrong_sides(&mut candidates);
     grow(boundary, joints, along, &mut candidates);
-    let outcome = |f: usize, left: &Vec<Candidate>| match left[..] {
+    let outcome = |f: usize, left: &Vec<FaceCandidate>| match left[..] {
         [only] => Ok(only.face),
         [] => {
             let lost = boundary.corners[f].iter().all(|n| incidence.faces[n.index()].is_empty());
@@ -55,7 +55,7 @@ fn candidates(
     joints: &Joints<'_>,
     incidence: &Incidence,
     side: &Side,
-) -> Vec<Candidate> {
+) -> Vec<FaceCandidate> {
     let corners = &boundary.corners[face];
     let at = |q: usize| &incidence.faces[corners[q].index()];
     let common = at(0).iter().filter(|id| (1..corners.len()).all(|q| at(q).contains(id)));
@@ -66,16 +66,16 @@ fn candidates(
         }
         let cosine = normal_at(group, side.middle).map(|normal| normal.dot(side.normal));
         let runs_along = cosine.is_none_or(|cosine| cosine.abs() >= ALONG);
-        runs_along.then(|| Candidate { face: id, outward: cosine.map(|cosine| cosine > 0.0) })
+        runs_along.then(|| FaceCandidate { face: id, outward: cosine.map(|cosine| cosine > 0.0) })
     };
     common.filter_map(fits).collect()
 }
 
 /// Strikes out candidates that have the volume on the other side, by what faces without a choice tell.
-fn strike_wrong_sides(candidates: &mut [Vec<Candidate>]) {
+fn strike_wrong_sides(candidates: &mut [Vec<FaceCandidate>]) {
     let mut told: BTreeMap<FaceId, [usize; 2]> = BTreeMap::new();
     for own in candidates.iter() {
-        if let [Candidate { face, outward: Some(outward) }] = own[..] {
+        if let [FaceCandidate { face, outward: Some(outward) }] = own[..] {
             told.entry(face).or_default()[usize::from(outward)] += 1;
         }
     }
@@ -84,7 +84,7 @@ fn strike_wrong_sides(candidates: &mut [Vec<Candidate>]) {
         let share = *with as f64 / (against + with) as f64;
         (share >= ONE_SIDE).then_some(true).or((share <= 1.0 - ONE_SIDE).then_some(false))
     };
-    let wrong = |candidate: &Candidate| {
+    let wrong = |candidate: &FaceCandidate| {
         candidate.outward.zip(volume_outside(candidate.face)).is_some_and(|(own, whole)| own != whole)
     };
     for own in candidates.iter_mut().filter(|own| own.len() > 1) {
@@ -95,14 +95,14 @@ fn strike_wrong_sides(candidates: &mut [Vec<Candidate>]) {
 }
 
 /// Lets decided faces tell their neighbours, until nothing changes.
-fn grow(boundary: &Boundary, joints: &Joints<'_>, along: &[Vec<EdgeId>], candidates: &mut [Vec<Candidate>]) {
+fn grow(boundary: &Boundary, joints: &Joints<'_>, along: &[Vec<EdgeId>], candidates: &mut [Vec<FaceCandidate>]) {
     let mut edges_of: Vec<Vec<usize>> = vec![Vec::new(); boundary.faces.len()];
     for (edge, faces) in boundary.edge_faces.iter().enumerate() {
         faces.iter().for_each(|&face| edges_of[face].push(edge));
     }
     let mut decided: VecDeque<usize> = (0..candidates.len()).filter(|&f| candidates[f].len() == 1).collect();
     while let Some(face) = decided.pop_front() {
-        let [Candidate { face: own, .. }] = candidates[face][..] else { continue };
+        let [FaceCandidate { face: own, .. }] = candidates[face][..] else { continue };
         for &edge in &edges_of[face] {
             // Where three faces meet, there is no "other side".
             let [a, b] = boundary.edge_faces[edge][..] else { continue };
@@ -111,7 +111,7 @@ fn grow(boundary: &Boundary, joints: &Joints<'_>, along: &[Vec<EdgeId>], candida
                 continue;
             }
             let bounds = |&&id: &&EdgeId| joints.faces_of(id).contains(&own);
-            let kept: Vec<Candidate> = match along[edge].iter().find(bounds) {
+            let kept: Vec<FaceCandidate> = match along[edge].iter().find(bounds) {
                 None => candidates[other].iter().filter(|c| c.face == own).copied().collect(),
                 // A seam has its one face on both sides.
                 Some(&id) if joints.faces_of(id).len() == 1 && joints.is_seam(id) => continue,
@@ -127,18 +127,22 @@ fn grow(boundary: &Boundary, joints: &Joints<'_>, along: &[Vec<EdgeId>], candida
     }
 }
 
-/// The claims of mesh faces, patch by patch.
-pub(super) fn sheets(mesh: &Mesh, boundary: &Boundary, hosts: &[Option<Vec<FaceId>>]) -> Vec<Claimed<usize>> {
+/// The candidates of mesh faces, patch by patch.
+pub(super) fn sheets(
+    mesh: &Mesh,
+    boundary: &Boundary,
+    classifications: &[Option<Vec<FaceId>>],
+) -> Vec<Candidate<usize>> {
     let mut sheets: BTreeMap<(EntityKey, &[FaceId]), Vec<usize>> = BTreeMap::new();
-    for (face, host) in hosts.iter().enumerate() {
-        if let Some(host) = host {
-            sheets.entry((boundary.faces[face].entity, host)).or_default().push(face);
+    for (face, classification) in classifications.iter().enumerate() {
+        if let Some(classification) = classification {
+            sheets.entry((boundary.faces[face].entity, classification)).or_default().push(face);
         }
     }
-    let claim = |((entity, host), items): ((EntityKey, &[FaceId]), Vec<usize>)| Claimed {
+    let candidate = |((entity, classification), items): ((EntityKey, &[FaceId]), Vec<usize>)| Candidate {
         label: mesh.label(entity),
         items,
-        entities: host.iter().map(|&id| id.into()).collect(),
+        entities: classification.iter().map(|&id| id.into()).collect(),
     };
-    sheets.into_iter().map(claim).collect()
+    sheets.into_iter().map(candidate).collect()
 }

@@ -7,7 +7,7 @@
 //!    struck out: at a sharp edge both sides of a thin plate hold all corners of some faces.
 //! 4. **Growth.** A mesh face that still has a choice goes with a neighbour across a mesh edge that runs along no CAD edge, and not with one across
 //!    an edge of the neighbour's CAD face. Nearness never decides.
-//! 5. **Quilts.** Faces whose corners no single CAD face holds, but several that go on smoothly in one another do, lie on these together.
+//! 5. **SmoothGroups.** Faces whose corners no single CAD face holds, but several that go on smoothly in one another do, lie on these together.
 //! 6. **Edges and corners.** A mesh edge between faces on different CAD faces goes to the CAD edge of theirs that it runs along; a node at the vertex of such
 //!    an edge to that vertex.
 //!
@@ -16,11 +16,11 @@
 mod edges;
 mod faces;
 mod incidence;
-mod quilts;
+mod smooth_groups;
 
 use cad::{Aabb, FaceId, Model};
 
-use super::{Claims, Joints, sides};
+use super::{Candidates, Joints, sides};
 use crate::mesh::{Boundary, Mesh};
 pub use incidence::Incidence;
 
@@ -81,7 +81,7 @@ fn list(faces: &[FaceId]) -> String {
 #[derive(Debug)]
 pub struct Inference {
     /// What is decided.
-    pub claims: Claims,
+    pub candidates: Candidates,
     /// Boundary faces that are not, by index, with the reason.
     pub faces: Vec<(usize, Doubt)>,
     /// Boundary edges that are not.
@@ -96,7 +96,7 @@ impl Inference {
     }
 }
 
-/// Ties the boundary to the CAD by geometry.
+/// PeriodicConstraint the boundary to the CAD by geometry.
 #[must_use]
 pub fn infer(mesh: &Mesh, boundary: &Boundary, model: &Model, tolerance: &Tolerance) -> Inference {
     let joints = Joints::new(model);
@@ -104,10 +104,11 @@ pub fn infer(mesh: &Mesh, boundary: &Boundary, model: &Model, tolerance: &Tolera
     let along = incidence.along(mesh, boundary, model);
     let sides = sides(mesh, boundary);
     let decided = faces::decide(boundary, &joints, &incidence, &along, &sides);
-    let (hosts, doubts) = quilts::join(boundary, model, &joints, &incidence, &sides, decided);
-    let mut claims = Claims { trusted: true, sheets: faces::sheets(mesh, boundary, &hosts), ..Claims::default() };
-    let strings = edges::strings(boundary, model, &joints, &along, &hosts);
-    claims.points = edges::points(boundary, model, &incidence, &strings);
-    claims.strings = strings.claims;
-    Inference { claims, faces: doubts, edges: strings.doubts }
+    let (classifications, doubts) = smooth_groups::join(boundary, model, &joints, &incidence, &sides, decided);
+    let mut candidates =
+        Candidates { trusted: true, sheets: faces::sheets(mesh, boundary, &classifications), ..Candidates::default() };
+    let strings = edges::strings(boundary, model, &joints, &along, &classifications);
+    candidates.points = edges::points(boundary, model, &incidence, &strings);
+    candidates.strings = strings.candidates;
+    Inference { candidates, faces: doubts, edges: strings.doubts }
 }

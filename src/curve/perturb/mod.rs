@@ -45,8 +45,8 @@ mod roots;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::associate::{Association, Host};
-use crate::curve::periodic::Ties;
+use crate::associate::{Association, Classification};
+use crate::curve::periodic::PeriodicConstraint;
 use crate::curve::wall::Projected;
 use crate::mesh::Boundary;
 use crate::mesh::elevate::Elevated;
@@ -61,12 +61,14 @@ pub fn perturb(
     boundary: &Boundary,
     association: &Association,
     projected: &Projected,
-    ties: &Ties,
+    periodic: &PeriodicConstraint,
 ) -> Vec<DVec3> {
-    let planar = |host: Host| association.plane_of(host).is_some();
-    let curved = |host: Host| matches!(host, Host::Surface(_)) && !planar(host);
+    let planar = |classification: Classification| association.plane_of(classification).is_some();
+    let curved = |classification: Classification| {
+        matches!(classification, Classification::Surface(_)) && !planar(classification)
+    };
     let linear = elevated.linear_nodes;
-    let host = |n: usize| projected.host(n);
+    let classification = |n: usize| projected.classification(n);
     let mut wall = wall_faces(elevated, boundary, |f| curved(association.faces[f]));
     let mut displacement = projected.displacement.clone();
     let nodes = elevated.mesh.points.len();
@@ -83,28 +85,28 @@ pub fn perturb(
     let seeds = on(&wall);
     let planes = wall_faces(elevated, boundary, |f| planar(association.faces[f]));
     let graph = Graph::new(elevated);
-    let mut all_seeds = graph.walls_of_their_own(|n| planar(host(n)), &on(&planes));
+    let mut all_seeds = graph.walls_of_their_own(|n| planar(classification(n)), &on(&planes));
     all_seeds.iter_mut().zip(&seeds).for_each(|(all, seed)| *all |= seed);
     let (roots, all_roots) = rayon::join(|| graph.roots(&seeds), || graph.roots(&all_seeds));
     drop(graph);
 
-    let in_plane = |n: usize| n >= linear && planar(host(n));
+    let in_plane = |n: usize| n >= linear && planar(classification(n));
     let field = Field::new(elevated, &wall, &displacement, &seeds, roots, &[], &projected.beyond);
     let reach = field.reach_of_roots();
     let mut carried = carry(&field, elevated, displacement.clone(), in_plane);
     carried.par_iter_mut().enumerate().skip(linear).for_each(|(n, d)| {
-        if let Some(plane) = association.plane_of(host(n)) {
+        if let Some(plane) = association.plane_of(classification(n)) {
             *d = plane.closest(elevated.mesh.points[n] + *d) - elevated.mesh.points[n];
         }
     });
     displacement = carried;
-    ties.carry(&elevated.mesh.points, &mut displacement);
+    periodic.carry(&elevated.mesh.points, &mut displacement);
 
     wall.extend(planes);
     let field = Field::new(elevated, &wall, &displacement, &all_seeds, all_roots, &reach, &projected.beyond);
     let mut whole = displacement.clone();
     whole.resize(nodes, DVec3::ZERO);
-    let whole = carry(&field, elevated, whole, |n| host(n) == Host::Free);
+    let whole = carry(&field, elevated, whole, |n| classification(n) == Classification::Free);
     sum(elevated, association, projected, whole)
 }
 
@@ -118,7 +120,7 @@ fn sum(
     displacement.par_iter_mut().zip(&elevated.mesh.points).enumerate().for_each(|(n, (place, straight))| {
         *place += *straight;
         if n >= elevated.linear_nodes {
-            *place = association.plane_of(projected.host(n)).map_or(*place, |plane| plane.closest(*place));
+            *place = association.plane_of(projected.classification(n)).map_or(*place, |plane| plane.closest(*place));
         }
     });
     displacement

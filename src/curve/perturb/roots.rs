@@ -45,7 +45,7 @@ impl<'a> Graph<'a> {
         &self.neighbours[self.starts[node] as usize..self.starts[node + 1] as usize]
     }
 
-    /// For every linear node the seed at the end of the shortest path along mesh edges (Dijkstra from all seeds at once; ties
+    /// For every linear node the seed at the end of the shortest path along mesh edges (Dijkstra from all seeds at once; periodic
     /// go to the smaller seed); `None` where no path leads to one.
     pub(super) fn roots(&self, seeds: &[bool]) -> Vec<Option<u32>> {
         let linear_nodes = self.points.len();

@@ -7,9 +7,9 @@
 
 use glam::DVec3;
 
-use crate::associate::{Association, Host};
+use crate::associate::{Association, Classification};
 use crate::certify::{self, Buffer, Elements, MeshElements};
-use crate::curve::periodic::Ties;
+use crate::curve::periodic::PeriodicConstraint;
 use crate::curve::proof::{Proof, behind, walls};
 use crate::element::{Cell, Order};
 use crate::mesh::{Boundary, Mesh};
@@ -47,7 +47,7 @@ pub fn retreat(
     linear: &[DVec3],
     boundary: &Boundary,
     association: &Association,
-    ties: &Ties,
+    periodic: &PeriodicConstraint,
     proof: Proof,
 ) -> (Vec<f64>, Proof) {
     let curved = mesh.points.clone();
@@ -57,7 +57,7 @@ pub fn retreat(
     }
     let mut failing = proof.failing(mesh, boundary);
     while !failing.is_empty() {
-        let touched = take_back(mesh, ties, &failing, &mut shares);
+        let touched = take_back(mesh, periodic, &failing, &mut shares);
         if touched.is_empty() {
             break;
         }
@@ -66,7 +66,7 @@ pub fn retreat(
                 mesh.points[n] = fallback.places[n].lerp(curved[n], share);
             }
         }
-        ties.apply(&mut mesh.points);
+        periodic.apply(&mut mesh.points);
         let subset = Subset { whole: MeshElements::new(mesh, Some(linear)), elements: &touched };
         let outcome = certify::certify(&subset, &certify::Settings::default());
         failing = outcome.failures.iter().map(|judged| touched[judged.element]).collect();
@@ -79,7 +79,7 @@ pub fn retreat(
 
 /// Halves the shares around failing elements; returns all elements that have a node with a changed share, none where all shares
 /// were zero already.
-fn take_back(mesh: &Mesh, ties: &Ties, failing: &[usize], shares: &mut [f64]) -> Vec<usize> {
+fn take_back(mesh: &Mesh, periodic: &PeriodicConstraint, failing: &[usize], shares: &mut [f64]) -> Vec<usize> {
     let mut changed = vec![false; shares.len()];
     let elements: Vec<&[crate::mesh::NodeId]> =
         mesh.blocks_of(3).flat_map(|(_, block)| block.elements(mesh.order)).collect();
@@ -87,7 +87,7 @@ fn take_back(mesh: &Mesh, ties: &Ties, failing: &[usize], shares: &mut [f64]) ->
     let near = |changed: &[bool], e: usize| elements[e].iter().any(|n| changed[n.index()]);
     let ring: Vec<usize> = (0..elements.len()).filter(|&e| near(&changed, e)).collect();
     ring.iter().flat_map(|&e| elements[e]).for_each(|n| changed[n.index()] = true);
-    ties.spread(&mut changed);
+    periodic.spread(&mut changed);
     changed.iter_mut().zip(&*shares).for_each(|(changed, &share)| *changed &= share > 0.0);
     for (share, _) in shares.iter_mut().zip(&changed).filter(|(_, changed)| **changed) {
         *share = if *share <= LEAST_SHARE { 0.0 } else { 0.5 * *share };
@@ -107,7 +107,7 @@ pub fn given_up(
     let mut faces = Vec::new();
     for face in 0..boundary.faces.len() {
         let share = boundary.nodes(face, mesh).iter().map(|n| shares[n.index()]).fold(1.0, f64::min);
-        if share < 1.0 && matches!(association.faces[face], Host::Surface(_)) {
+        if share < 1.0 && matches!(association.faces[face], Classification::Surface(_)) {
             faces.push(GivenUp { face, share, order });
         }
     }

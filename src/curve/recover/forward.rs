@@ -98,7 +98,7 @@ impl Ladder<'_, '_> {
     /// The walls around some elements go no farther.
     fn stay(&self, elements: &[usize], pull: &mut [f64]) {
         let mut own = self.shares_around(elements, 1, 0.0);
-        self.ties.least(&mut own);
+        self.periodic.least(&mut own);
         pull.iter_mut().zip(own).for_each(|(pull, own)| *pull = pull.min(own));
     }
 }

@@ -21,10 +21,10 @@ mod way;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::associate::{Association, Host};
+use crate::associate::{Association, Classification};
 use crate::curve::Job;
 use crate::curve::orders::{Fall, Ready};
-use crate::curve::periodic::Ties;
+use crate::curve::periodic::PeriodicConstraint;
 use crate::curve::perturb::perturb;
 use crate::curve::proof::Proof;
 use crate::curve::recover::backtrack::{Fallback, GivenUp, given_up, retreat};
@@ -47,7 +47,7 @@ pub(crate) struct Ladder<'a, 'f> {
     elevated: &'a mut Elevated,
     boundary: &'a Boundary,
     association: &'a Association,
-    ties: &'a Ties,
+    periodic: &'a PeriodicConstraint,
     projected: &'a mut Projected,
     settings: &'a smooth::Settings,
     freeze_walls: bool,
@@ -84,10 +84,10 @@ impl<'a, 'f> Ladder<'a, 'f> {
         ready: &'a mut Ready,
         below: &'a mut Fall<'f>,
     ) -> Ladder<'a, 'f> {
-        let Ready { elevated, ties, projected, .. } = ready;
+        let Ready { elevated, periodic, projected, .. } = ready;
         let Job { smoothing: settings, freeze_walls, freeze_linear, .. } = job;
         let (freeze_walls, freeze_linear) = (*freeze_walls, *freeze_linear);
-        Ladder { elevated, boundary, association, ties, projected, settings, freeze_walls, freeze_linear, below }
+        Ladder { elevated, boundary, association, periodic, projected, settings, freeze_walls, freeze_linear, below }
     }
 
     /// Makes the smoothed places valid, and leaves them in `elevated.mesh.points`.
@@ -162,7 +162,7 @@ impl<'a, 'f> Ladder<'a, 'f> {
             self.association,
             &mesh.points,
             self.projected,
-            self.ties,
+            self.periodic,
             linear,
             self.freeze_walls,
             self.freeze_linear,
@@ -184,7 +184,7 @@ impl<'a, 'f> Ladder<'a, 'f> {
             let mut places = below.raised(&self.elevated.mesh);
             places.iter_mut().zip(&straight).for_each(|(place, straight)| *place += *straight);
             let order = below.order;
-            self.ties.apply(&mut places);
+            self.periodic.apply(&mut places);
             if self.proof(&mut places).holds() {
                 return Fallback { order, places };
             }
@@ -196,7 +196,7 @@ impl<'a, 'f> Ladder<'a, 'f> {
     fn take_back(&mut self, round: usize, failing: &[usize], now: &mut Standing) {
         let keep = if round == ROUNDS { 0.0 } else { 0.5 };
         let mut own = self.shares_around(failing, round, keep);
-        self.ties.least(&mut own);
+        self.periodic.least(&mut own);
         let carried = (now.way.fallback.order == Order::LINEAR).then(|| self.carried());
         let on_wall = |n: usize| self.on_wall(n);
         let changed: Vec<(usize, f64)> = own.into_iter().enumerate().filter(|(_, share)| *share < 1.0).collect();
@@ -222,7 +222,7 @@ impl<'a, 'f> Ladder<'a, 'f> {
         let straight = std::mem::replace(&mut mesh.points, std::mem::take(&mut now.places));
         let linear = &straight[..self.elevated.linear_nodes];
         let (fallback, before) = (&now.way.fallback, now.proof.clone());
-        let (shares, proof) = retreat(mesh, fallback, linear, self.boundary, self.association, self.ties, before);
+        let (shares, proof) = retreat(mesh, fallback, linear, self.boundary, self.association, self.periodic, before);
         now.places = std::mem::replace(&mut mesh.points, straight);
         now.proof = proof;
         let back: Vec<usize> = (0..shares.len()).filter(|&n| shares[n] < 1.0 && self.on_wall(n)).collect();
@@ -240,7 +240,7 @@ impl<'a, 'f> Ladder<'a, 'f> {
                 now.places[n] += after[n] - before[n];
             }
         }
-        self.ties.apply(&mut now.places);
+        self.periodic.apply(&mut now.places);
     }
 
     /// Takes the displacements of nodes from their way.
@@ -254,12 +254,13 @@ impl<'a, 'f> Ladder<'a, 'f> {
 
     /// Places of all nodes as the walls' displacement carries them.
     fn carried(&self) -> Vec<DVec3> {
-        perturb(self.elevated, self.boundary, self.association, self.projected, self.ties)
+        perturb(self.elevated, self.boundary, self.association, self.projected, self.periodic)
     }
 
     fn on_wall(&self, node: usize) -> bool {
-        let host = self.projected.host(node);
-        matches!(host, Host::Surface(_) | Host::Curve(_) | Host::Vertex(_)) && self.association.plane_of(host).is_none()
+        let classification = self.projected.classification(node);
+        matches!(classification, Classification::Surface(_) | Classification::Curve(_) | Classification::Vertex(_))
+            && self.association.plane_of(classification).is_none()
     }
 
     /// What each node keeps where `keep` is kept around some elements.

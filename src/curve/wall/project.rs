@@ -41,7 +41,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::state::{Projected, group_of};
-use crate::associate::{Association, Host};
+use crate::associate::{Association, Classification};
 use crate::element::{Cell, Order, interior_count, interior_extension, interior_start};
 use crate::mesh::elevate::Elevated;
 use crate::mesh::{Boundary, NodeId};
@@ -59,13 +59,13 @@ const LONGEST: f64 = 2.0;
 #[must_use]
 pub fn project(elevated: &Elevated, boundary: &Boundary, association: &Association, freeze_linear: bool) -> Projected {
     let nodes = elevated.boundary_nodes;
-    let mut hosts = association.nodes.clone();
-    hosts.resize(nodes, Host::Free);
+    let mut classifications = association.nodes.clone();
+    classifications.resize(nodes, Classification::Free);
     let mut projector = Projector {
         elevated,
         association,
         result: Projected {
-            hosts,
+            classifications,
             displacement: vec![DVec3::ZERO; nodes],
             sizes: FxHashMap::default(),
             beyond: Vec::new(),
@@ -99,11 +99,15 @@ impl Projector<'_> {
         self.elevated.mesh.points[node.index()]
     }
 
-    /// The feet of wishes on a host's group; planes and fixed places need no CAD.
-    fn feet(&self, host: Host, wishes: &[DVec3]) -> Feet {
-        let places = match (host, self.association.plane_of(host), group_of(self.association, host)) {
+    /// The feet of wishes on a classification's group; planes and fixed places need no CAD.
+    fn feet(&self, classification: Classification, wishes: &[DVec3]) -> Feet {
+        let places = match (
+            classification,
+            self.association.plane_of(classification),
+            group_of(self.association, classification),
+        ) {
             (_, Some(plane), _) => wishes.iter().map(|&x| plane.closest(x)).collect(),
-            (Host::Vertex(place), ..) => vec![place; wishes.len()],
+            (Classification::Vertex(place), ..) => vec![place; wishes.len()],
             (_, _, Some(group)) => {
                 let feet: Vec<Foot> = wishes.iter().map(|&x| group.closest(x, None)).collect();
                 let unproven = feet.iter().filter(|f| !f.is_proven()).count();
@@ -124,10 +128,11 @@ impl Projector<'_> {
     }
 
     fn linear_nodes(&mut self) {
-        let hosts = &self.association.nodes;
-        let boundary: Vec<usize> = (0..self.elevated.linear_nodes).filter(|&n| hosts[n] != Host::Free).collect();
+        let classifications = &self.association.nodes;
+        let boundary: Vec<usize> =
+            (0..self.elevated.linear_nodes).filter(|&n| classifications[n] != Classification::Free).collect();
         for batch in boundary.chunks(BATCH) {
-            let own = |&n: &usize| self.feet(hosts[n], &[self.elevated.mesh.points[n]]);
+            let own = |&n: &usize| self.feet(classifications[n], &[self.elevated.mesh.points[n]]);
             let feet: Vec<Feet> = batch.par_iter().map(own).collect();
             for (&n, feet) in batch.iter().zip(feet) {
                 self.take(once(n), feet);
@@ -142,19 +147,21 @@ impl Projector<'_> {
         let on_boundary = carriers.iter().take_while(|(_, first)| first.index() < self.elevated.boundary_nodes);
         let known: FxHashMap<[NodeId; 2], NodeId> =
             on_boundary.map(|(ends, first)| ([ends[0], ends[1]], first)).collect();
-        let hosts = self.association.edges.iter().zip(&boundary.edges);
-        let edges: Vec<(Host, [NodeId; 2], usize)> =
-            hosts.filter_map(|(&host, ends)| known.get(ends).map(|first| (host, *ends, first.index()))).collect();
+        let classifications = self.association.edges.iter().zip(&boundary.edges);
+        let edges: Vec<(Classification, [NodeId; 2], usize)> = classifications
+            .filter_map(|(&classification, ends)| known.get(ends).map(|first| (classification, *ends, first.index())))
+            .collect();
         for batch in edges.chunks(BATCH) {
-            let feet: Vec<Feet> = batch.par_iter().map(|&(host, ends, _)| self.spread(host, ends, order)).collect();
-            for (&(host, ends, first), feet) in batch.iter().zip(feet) {
+            let feet: Vec<Feet> =
+                batch.par_iter().map(|&(classification, ends, _)| self.spread(classification, ends, order)).collect();
+            for (&(classification, ends, first), feet) in batch.iter().zip(feet) {
                 let size = self.straight(ends[0]).distance(self.straight(ends[1]));
                 for end in ends {
                     let own = self.result.sizes.entry(end.index()).or_insert(size);
                     *own = own.min(size);
                 }
                 for node in first..first + inner {
-                    self.result.hosts[node] = host;
+                    self.result.classifications[node] = classification;
                     self.result.sizes.insert(node, size);
                 }
                 self.take(first..first + inner, feet);
@@ -163,19 +170,19 @@ impl Projector<'_> {
     }
 
     /// Places of an edge's inner nodes: on the CAD, at equal fractions of the projected edge's length.
-    fn spread(&self, host: Host, ends: [NodeId; 2], order: Order) -> Feet {
+    fn spread(&self, classification: Classification, ends: [NodeId; 2], order: Order) -> Feet {
         let p = order.get();
         let [a, b] = ends.map(|n| self.straight(n) + self.result.displacement[n.index()]);
         let at = |s: f64| a.lerp(b, s);
         let even: Vec<f64> = (1..p).map(|k| k as f64 / p as f64).collect();
         let chord = |shares: &[f64]| shares.iter().map(|&s| at(s)).collect::<Vec<_>>();
-        if group_of(self.association, host).is_none() || self.association.plane_of(host).is_some() {
-            return self.feet(host, &chord(&even));
+        if group_of(self.association, classification).is_none() || self.association.plane_of(classification).is_some() {
+            return self.feet(classification, &chord(&even));
         }
         let stations: Vec<f64> = (1..p * STATIONS).map(|k| k as f64 / (p * STATIONS) as f64).collect();
-        let measured = self.feet(host, &chord(&stations));
+        let measured = self.feet(classification, &chord(&stations));
         let shares = equal_lengths(a, b, &stations, &measured.places, p).unwrap_or(even);
-        self.feet(host, &chord(&shares)).after(&measured)
+        self.feet(classification, &chord(&shares)).after(&measured)
     }
 
     fn faces(&mut self, boundary: &Boundary) {
@@ -184,17 +191,17 @@ impl Projector<'_> {
         let cell = |f: usize| boundary.faces[f].cell;
         let nodes = |f: usize| boundary.nodes(f, &elevated.mesh).split_at(interior_start(cell(f), order));
         let faces: Vec<usize> = (0..boundary.faces.len()).collect();
-        for (faces, hosts) in faces.chunks(BATCH).zip(self.association.faces.chunks(BATCH)) {
-            let own = |(&f, &host): (&usize, &Host)| {
+        for (faces, classifications) in faces.chunks(BATCH).zip(self.association.faces.chunks(BATCH)) {
+            let own = |(&f, &classification): (&usize, &Classification)| {
                 let (rim, inner) = nodes(f);
-                self.feet(host, &self.wishes(cell(f), rim, inner))
+                self.feet(classification, &self.wishes(cell(f), rim, inner))
             };
-            let feet: Vec<Feet> = faces.par_iter().zip(hosts).map(own).collect();
-            for ((&f, &host), feet) in faces.iter().zip(hosts).zip(feet) {
+            let feet: Vec<Feet> = faces.par_iter().zip(classifications).map(own).collect();
+            for ((&f, &classification), feet) in faces.iter().zip(classifications).zip(feet) {
                 let (rim, inner) = nodes(f);
                 let size = self.straight(rim[0]).distance(self.straight(rim[1]));
                 for node in inner {
-                    self.result.hosts[node.index()] = host;
+                    self.result.classifications[node.index()] = classification;
                     self.result.sizes.insert(node.index(), size);
                 }
                 self.take(inner.iter().map(|n| n.index()), feet);

@@ -4,14 +4,14 @@ use cad::Group;
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
-use crate::associate::{Association, Host};
+use crate::associate::{Association, Classification};
 
-/// Hosts and places of all nodes after projection.
+/// Classifications and places of all nodes after projection.
 #[derive(Clone, Debug)]
 pub struct Projected {
-    /// Host of every node up to [`Elevated::boundary_nodes`]; the nodes after them are free.
-    pub hosts: Vec<Host>,
-    /// Displacement of every boundary node from its straight place to its CAD group; zero for the others, as many as hosts.
+    /// Classification of every node up to [`Elevated::boundary_nodes`]; the nodes after them are free.
+    pub classifications: Vec<Classification>,
+    /// Displacement of every boundary node from its straight place to its CAD group; zero for the others, as many as classifications.
     pub displacement: Vec<DVec3>,
     /// By boundary node, the size of the edge or face that it lies inside; of a linear node's edges, the shortest.
     pub sizes: FxHashMap<usize, f64>,
@@ -24,18 +24,18 @@ pub struct Projected {
 }
 
 impl Projected {
-    /// The host of any node.
+    /// The classification of any node.
     #[must_use]
-    pub fn host(&self, node: usize) -> Host {
-        self.hosts.get(node).copied().unwrap_or(Host::Free)
+    pub fn classification(&self, node: usize) -> Classification {
+        self.classifications.get(node).copied().unwrap_or(Classification::Free)
     }
 }
 
-/// The CAD that holds a host's nodes.
-pub(crate) fn group_of(association: &Association, host: Host) -> Option<&Group> {
-    match host {
-        Host::Surface(surface) => Some(&association.surfaces[surface].group),
-        Host::Curve(curve) => Some(&association.curves[curve].group),
+/// The CAD that holds a classification's nodes.
+pub(crate) fn group_of(association: &Association, classification: Classification) -> Option<&Group> {
+    match classification {
+        Classification::Surface(surface) => Some(&association.surfaces[surface].group),
+        Classification::Curve(curve) => Some(&association.curves[curve].group),
         _ => None,
     }
 }

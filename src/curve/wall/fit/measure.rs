@@ -7,7 +7,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::Fit;
-use crate::associate::Host;
+use crate::associate::Classification;
 use crate::curve::wall::group_of;
 use crate::element::{Cell, edge_nodes};
 use crate::mesh::NodeId;
@@ -45,7 +45,7 @@ impl<'a> Fit<'a> {
         }
     }
 
-    pub(super) fn host(&self, part: Part) -> Host {
+    pub(super) fn classification(&self, part: Part) -> Classification {
         match part {
             Part::Face(face) => self.association.faces[face],
             Part::Edge(edge) => self.association.edges[edge],
@@ -83,14 +83,14 @@ impl<'a> Fit<'a> {
         self.straight(node) + self.projected.displacement[node.index()]
     }
 
-    /// The group that holds a host's nodes; planes need none.
-    pub(super) fn group(&self, host: Host) -> Option<&'a Group> {
-        group_of(self.association, host).filter(|_| self.association.plane_of(host).is_none())
+    /// The group that holds a classification's nodes; planes need none.
+    pub(super) fn group(&self, classification: Classification) -> Option<&'a Group> {
+        group_of(self.association, classification).filter(|_| self.association.plane_of(classification).is_none())
     }
 
     pub(super) fn slides(&self, node: NodeId) -> bool {
         let new = node.index() >= self.elevated.linear_nodes;
-        new && self.group(self.projected.host(node.index())).is_some() && !self.tied.contains(&node)
+        new && self.group(self.projected.classification(node.index())).is_some() && !self.tied.contains(&node)
     }
 
     /// Length of a part's first edge.
@@ -104,7 +104,7 @@ impl<'a> Fit<'a> {
 
     /// Points of the wall, and their feet.
     pub(super) fn feet(&self, part: Part, values: &[Vec<f64>]) -> Vec<(DVec3, Foot)> {
-        let Some(group) = self.group(self.host(part)) else { return Vec::new() };
+        let Some(group) = self.group(self.classification(part)) else { return Vec::new() };
         let places: Vec<DVec3> = self.nodes(part).into_iter().map(|n| self.place(n)).collect();
         let point = |values: &Vec<f64>| places.iter().zip(values).map(|(x, v)| *x * *v).sum();
         values.iter().map(point).map(|x| (x, group.closest(x, None))).collect()
@@ -117,10 +117,11 @@ impl<'a> Fit<'a> {
     /// The faces and edges that have nodes to slide, roughly measured.
     pub(super) fn pieces(&self) -> Vec<Piece> {
         let faces = (0..self.boundary.faces.len()).map(Part::Face);
-        let on_curve = |&edge: &usize| matches!(self.association.edges[edge], Host::Curve(_));
+        let on_curve = |&edge: &usize| matches!(self.association.edges[edge], Classification::Curve(_));
         let parts: Vec<Part> = faces.chain((0..self.boundary.edges.len()).filter(on_curve).map(Part::Edge)).collect();
         let measured = |&part: &Part| {
-            let slides = self.group(self.host(part)).is_some() && self.rim(part).into_iter().any(|n| self.slides(n));
+            let slides =
+                self.group(self.classification(part)).is_some() && self.rim(part).into_iter().any(|n| self.slides(n));
             slides.then(|| Piece { part, far: self.far(part, &self.tables[&self.cell(part)].coarse) })
         };
         let batch = |parts: &[Part]| parts.par_iter().filter_map(measured).collect::<Vec<_>>();
@@ -137,9 +138,9 @@ impl<'a> Fit<'a> {
     }
 
     pub(super) fn key(&self, part: Part) -> Place {
-        match self.host(part) {
-            Host::Curve(curve) => (true, curve),
-            Host::Surface(surface) => (false, surface),
+        match self.classification(part) {
+            Classification::Curve(curve) => (true, curve),
+            Classification::Surface(surface) => (false, surface),
             _ => (false, usize::MAX),
         }
     }

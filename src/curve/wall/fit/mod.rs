@@ -27,8 +27,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::associate::{Association, Host, normal_at};
-use crate::curve::periodic::Ties;
+use crate::associate::{Association, Classification, normal_at};
+use crate::curve::periodic::PeriodicConstraint;
 use crate::curve::wall::Projected;
 use crate::element::Cell;
 use crate::mesh::elevate::Elevated;
@@ -81,12 +81,12 @@ pub fn fit(
     elevated: &Elevated,
     boundary: &Boundary,
     association: &Association,
-    ties: &Ties,
+    periodic: &PeriodicConstraint,
     projected: &mut Projected,
 ) {
     let tables = [Cell::Line, Cell::Triangle, Cell::Quad].map(|cell| (cell, Table::new(cell, elevated.mesh.order)));
     let start = projected.displacement.clone();
-    let tied = ties.images().iter().flat_map(|image| [image.node, image.of]).collect();
+    let tied = periodic.images().iter().flat_map(|image| [image.node, image.of]).collect();
     let mut fit = Fit { elevated, boundary, association, tied, projected, start, tables: tables.into_iter().collect() };
     let mut pieces = fit.pieces();
     for _ in 0..ROUNDS {
@@ -95,7 +95,7 @@ pub fn fit(
         }
     }
     // Faces that stay off the CAD share edges with those on it.
-    let straight = |&face: &usize| association.faces[face] == Host::Straight;
+    let straight = |&face: &usize| association.faces[face] == Classification::Straight;
     fit.lead(&(0..boundary.faces.len()).filter(straight).map(Part::Face).collect::<Vec<_>>());
 }
 
@@ -177,17 +177,19 @@ impl Fit<'_> {
     }
 
     fn slider(&self, node: NodeId) -> Slider {
-        let host = self.projected.host(node.index());
-        let evaluation = self.group(host).and_then(|group| {
+        let classification = self.projected.classification(node.index());
+        let evaluation = self.group(classification).and_then(|group| {
             let foot = group.closest(self.place(node), None);
             group.evaluate(foot.entity, foot.parameters)
         });
-        let along = match (host, evaluation) {
-            (Host::Surface(_), Some(Evaluation::Surface(point))) => point.normal.map_or(Vec::new(), |normal| {
-                let first = normal.any_orthonormal_vector();
-                vec![first, normal.cross(first)]
-            }),
-            (Host::Curve(_), Some(Evaluation::Curve(point))) => point.tangent.into_iter().collect(),
+        let along = match (classification, evaluation) {
+            (Classification::Surface(_), Some(Evaluation::Surface(point))) => {
+                point.normal.map_or(Vec::new(), |normal| {
+                    let first = normal.any_orthonormal_vector();
+                    vec![first, normal.cross(first)]
+                })
+            }
+            (Classification::Curve(_), Some(Evaluation::Curve(point))) => point.tangent.into_iter().collect(),
             _ => Vec::new(),
         };
         Slider { node, along, step: DVec3::ZERO, at: Vec::new() }
@@ -196,7 +198,7 @@ impl Fit<'_> {
     fn model(&self, piece: usize, part: Part, sliders: &[Slider], number: &FxHashMap<NodeId, usize>) -> Model {
         let table = &self.tables[&self.cell(part)];
         let (nodes, rim, off) = (self.nodes(part), self.rim(part), NO_DIRECTION * self.size(part));
-        let group = self.group(self.host(part));
+        let group = self.group(self.classification(part));
         let normal = |x: DVec3| group.and_then(|group| normal_at(group, x));
         let feet = self.feet(part, &table.fine);
         let away = |(x, foot): &(DVec3, Foot)| {
@@ -280,7 +282,7 @@ impl Fit<'_> {
     /// Puts nodes that move at a share of their steps from `before`, on the CAD.
     fn slide(&mut self, sliders: &[Slider], before: &[DVec3], shares: &[f64], moved: &[bool]) {
         let foot = |s: usize| {
-            let group = self.group(self.projected.host(sliders[s].node.index())).filter(|_| shares[s] > 0.0);
+            let group = self.group(self.projected.classification(sliders[s].node.index())).filter(|_| shares[s] > 0.0);
             group.map(|group| group.closest(before[s] + sliders[s].step * shares[s], None))
         };
         let moved: Vec<usize> = (0..sliders.len()).filter(|&s| moved[s]).collect();
@@ -294,7 +296,7 @@ impl Fit<'_> {
     fn lead(&mut self, parts: &[Part]) {
         let inner = |&part: &Part| -> Vec<(NodeId, DVec3, Option<Foot>)> {
             let (nodes, rim, table) = (self.nodes(part), self.rim(part), &self.tables[&self.cell(part)]);
-            let group = self.group(self.host(part));
+            let group = self.group(self.classification(part));
             let inner = nodes[rim.len()..].iter().zip(table.extension.chunks_exact(rim.len()));
             let foot = |(&node, weights): (&NodeId, &[f64])| {
                 let moved = |(n, &w): (&NodeId, &f64)| self.projected.displacement[n.index()] * w;

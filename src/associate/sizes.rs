@@ -3,7 +3,7 @@
 use cad::{Aabb, EntityId, Model};
 use glam::DVec3;
 
-use super::{AssociateError, Claims, Plane};
+use super::{AssociateError, Candidates, Plane};
 use crate::mesh::{Boundary, Mesh};
 
 /// How far mesh and CAD boxes may differ in size before the unit is taken to differ.
@@ -21,8 +21,13 @@ pub(super) fn plane_through(points: &[DVec3], slack: f64) -> Option<Plane> {
 }
 
 /// Refuses a CAD of another size or at another place than what is tied to it.
-pub fn check_boxes(mesh: &Mesh, boundary: &Boundary, model: &Model, claims: &Claims) -> Result<(), AssociateError> {
-    let linked = || claims.sheets.iter().filter(|s| !s.entities.is_empty());
+pub fn check_boxes(
+    mesh: &Mesh,
+    boundary: &Boundary,
+    model: &Model,
+    candidates: &Candidates,
+) -> Result<(), AssociateError> {
+    let linked = || candidates.sheets.iter().filter(|s| !s.entities.is_empty());
     let corners = linked().flat_map(|s| s.items.iter()).flat_map(|&f| boundary.corners[f].iter());
     let own = Aabb::of_points(corners.map(|n| mesh.points[n.index()]));
     let entities = linked()

@@ -7,7 +7,7 @@ use crate::mesh::{Boundary, EntityKey, Mesh, NodeId, Periodic};
 
 /// Mesh items that are said to lie on CAD entities.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Claimed<T> {
+pub struct Candidate<T> {
     /// What the user calls it.
     pub label: String,
     /// Boundary faces, or node pairs, or nodes.
@@ -18,37 +18,37 @@ pub struct Claimed<T> {
 
 /// All that is said.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Claims {
+pub struct Candidates {
     /// Faces on CAD faces, by index in the [`Boundary`].
-    pub sheets: Vec<Claimed<usize>>,
+    pub sheets: Vec<Candidate<usize>>,
     /// Edges on CAD edges.
-    pub strings: Vec<Claimed<[NodeId; 2]>>,
+    pub strings: Vec<Candidate<[NodeId; 2]>>,
     /// Points on CAD vertices.
-    pub points: Vec<Claimed<NodeId>>,
+    pub points: Vec<Candidate<NodeId>>,
     /// Pairs of mesh entities whose nodes correspond.
     pub periodic: Vec<Periodic>,
     /// What could not be used, and need not stop the work.
     pub notes: Vec<String>,
-    /// Whether the CAD is the file that the claims were made for.
+    /// Whether the CAD is the file that the candidates were made for.
     pub trusted: bool,
 }
 
-impl Claims {
-    /// The claims of a mesh file's entity tags: surface 3 lies on the CAD's face 3, and so on.
+impl Candidates {
+    /// The candidates of a mesh file's entity tags: surface 3 lies on the CAD's face 3, and so on.
     #[must_use]
-    pub fn by_tags(mesh: &Mesh, boundary: &Boundary, model: &Model) -> Claims {
-        let mut claims = Claims::default();
+    pub fn by_tags(mesh: &Mesh, boundary: &Boundary, model: &Model) -> Candidates {
+        let mut candidates = Candidates::default();
         let faces = boundary.faces.iter().enumerate().map(|(index, face)| (face.entity, index));
-        claims.sheets = gather(faces, |tag| FaceId::from_tag(tag).filter(|&id| model.face(id).is_some()));
+        candidates.sheets = gather(faces, |tag| FaceId::from_tag(tag).filter(|&id| model.face(id).is_some()));
         let lines = mesh
             .blocks_of(1)
             .flat_map(|(_, block)| block.elements(Order::LINEAR).map(move |ends| (block.entity, [ends[0], ends[1]])));
-        claims.strings = gather(lines, |tag| EdgeId::from_tag(tag).filter(|&id| model.edge(id).is_some()));
+        candidates.strings = gather(lines, |tag| EdgeId::from_tag(tag).filter(|&id| model.edge(id).is_some()));
         let points = mesh
             .blocks_of(0)
             .flat_map(|(_, block)| block.elements(Order::LINEAR).map(move |node| (block.entity, node[0])));
-        claims.points = gather(points, |tag| VertexId::from_tag(tag).filter(|&id| model.vertex(id).is_some()));
-        claims
+        candidates.points = gather(points, |tag| VertexId::from_tag(tag).filter(|&id| model.vertex(id).is_some()));
+        candidates
     }
 }
 
@@ -56,14 +56,14 @@ impl Claims {
 fn gather<T, I: Into<EntityId>>(
     items: impl Iterator<Item = (EntityKey, T)>,
     find: impl Fn(u32) -> Option<I>,
-) -> Vec<Claimed<T>> {
+) -> Vec<Candidate<T>> {
     let mut places = rustc_hash::FxHashMap::default();
-    let mut all: Vec<Claimed<T>> = Vec::new();
+    let mut all: Vec<Candidate<T>> = Vec::new();
     for (entity, item) in items {
         let place = *places.entry(entity).or_insert_with(|| {
             let found = u32::try_from(entity.tag).ok().and_then(&find);
             let entities = found.map(Into::into).into_iter().collect();
-            all.push(Claimed { label: entity.to_string(), items: Vec::new(), entities });
+            all.push(Candidate { label: entity.to_string(), items: Vec::new(), entities });
             all.len() - 1
         });
         all[place].items.push(item);

@@ -4,17 +4,19 @@ use std::path::Path;
 
 use cad::Model;
 
-use super::{AssociateError, Association, Claims, Inference, LinkageError, Tolerance, associate, infer, read_linkage};
+use super::{
+    AssociateError, Association, Candidates, Inference, LinkageError, Tolerance, associate, infer, read_linkage,
+};
 use crate::mesh::{Boundary, Mesh};
 
-/// An inference is used where at least this share of the faces of every patch that it ties is decided.
+/// An inference is used where at least this share of the faces of every patch that it periodic is decided.
 const DECIDED: f64 = 0.9;
 
-/// Claims, held against the CAD, and where they come from.
+/// Candidates, held against the CAD, and where they come from.
 #[derive(Debug)]
-pub struct Tied {
-    /// The claims.
-    pub claims: Claims,
+pub struct Classified {
+    /// The candidates.
+    pub candidates: Candidates,
     /// The association that they make.
     pub association: Association,
     /// What was inferred, where neither a linkage file nor tags told.
@@ -25,7 +27,7 @@ pub struct Tied {
 
 /// Why a mesh could not be tied.
 #[derive(Debug, thiserror::Error)]
-pub enum TieError {
+pub enum ClassifyError {
     /// The linkage file cannot be used.
     #[error(transparent)]
     Linkage(#[from] LinkageError),
@@ -34,39 +36,39 @@ pub enum TieError {
     Associate(#[from] AssociateError),
 }
 
-/// Ties a mesh to its CAD: by the linkage file where there is one, else by entity tags where they are this CAD's, else by geometry.
+/// PeriodicConstraint a mesh to its CAD: by the linkage file where there is one, else by entity tags where they are this CAD's, else by geometry.
 ///
-/// `linkage` is the linkage file with the file of the mesh, which it may name. `choose` may strike out claims before they are held against
+/// `linkage` is the linkage file with the file of the mesh, which it may name. `choose` may strike out candidates before they are held against
 /// the CAD. `max_offset` is that of [`associate`].
 ///
 /// # Errors
-/// [`TieError`]; where tags do not hold and geometry does not tell either, what is wrong with the tags.
-pub fn tie(
+/// [`ClassifyError`]; where tags do not hold and geometry does not tell either, what is wrong with the tags.
+pub fn classify(
     linkage: Option<[&Path; 2]>,
     mesh: &Mesh,
     boundary: &Boundary,
     model: &Model,
     max_offset: f64,
-    choose: &dyn Fn(&mut Claims),
-) -> Result<Tied, TieError> {
-    let held = |mut claims: Claims, inference: Option<Inference>, source: String| {
-        choose(&mut claims);
-        let mut association = associate(mesh, boundary, model, &claims, max_offset)?;
+    choose: &dyn Fn(&mut Candidates),
+) -> Result<Classified, ClassifyError> {
+    let held = |mut candidates: Candidates, inference: Option<Inference>, source: String| {
+        choose(&mut candidates);
+        let mut association = associate(mesh, boundary, model, &candidates, max_offset)?;
         association.notes.extend(model.losses());
-        association.notes.append(&mut claims.notes);
-        Ok::<_, AssociateError>(Tied { claims, association, inference, source })
+        association.notes.append(&mut candidates.notes);
+        Ok::<_, AssociateError>(Classified { candidates, association, inference, source })
     };
     if let Some([path, mesh_file]) = linkage {
-        let claims = read_linkage(path, mesh_file, mesh, boundary, model)?;
-        let trusted = claims.trusted;
-        let mut tied = held(claims, None, format!("linkage file {}", path.display()))?;
+        let candidates = read_linkage(path, mesh_file, mesh, boundary, model)?;
+        let trusted = candidates.trusted;
+        let mut tied = held(candidates, None, format!("linkage file {}", path.display()))?;
         if !trusted {
             let note = "names another CAD file; its numbers were held against this one";
             tied.association.notes.push(format!("{} {note}", path.display()));
         }
         return Ok(tied);
     }
-    let by_tags = held(Claims::by_tags(mesh, boundary, model), None, "the mesh's entity tags".into());
+    let by_tags = held(Candidates::by_tags(mesh, boundary, model), None, "the mesh's entity tags".into());
     let refused = match by_tags {
         Err(error) if error.tags_are_of_no_use() => error,
         other => return Ok(other?),
@@ -75,7 +77,7 @@ pub fn tie(
     if !is_usable(boundary, &inference) {
         return Err(refused.into());
     }
-    let mut tied = held(inference.claims.clone(), None, "geometry".into())?;
+    let mut tied = held(inference.candidates.clone(), None, "geometry".into())?;
     let [faces, edges] = [inference.undecided(), inference.edges.len()];
     tied.association.notes.push(format!(
         "the mesh's entity tags are not this CAD's numbers; what lies on what was found by geometry, {faces} faces and {edges} edges \
