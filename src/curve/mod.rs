@@ -16,7 +16,7 @@
 //! | edges: 2 ends, first new node, 3 x `u32` | 10 |
 //! | costs of the elements: 32 a tet | 24 |
 //! | proven minima: `f64` a tet | 6 |
-//! | elements around the corners, for turning angles: 4 x `u32` a tet | 12 |
+//! | elements around the corners, for grid-line angles: 4 x `u32` a tet | 12 |
 //! | boundary: classifications, displacements, association | 8 |
 //! | CAD, code, allocator | 23 |
 //!

@@ -4,12 +4,12 @@
 //! quantities but lives in [`crate::smooth`].
 
 mod cost;
+mod grid_lines;
 mod shape;
 mod size;
-mod turning;
 
 pub use cost::{alpha, blend, nodal};
+pub use grid_lines::{GridLineAngles, GridLines};
 pub use shape::{Cut, c_wcn, c_wcn_slope, corner_frame, element_c_wcn};
 pub(crate) use shape::{cofactor, squared};
 pub use size::{element_c_jac, jacobians};
-pub use turning::{Columns, Turning};

@@ -6,8 +6,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{
-    CellReport, CertificateReport, GivenUpFace, Input, Nodes, PatchReport, Projections, Report, SCHEMA,
-    SmoothingReport, StepReport, TurningReport, WallFailure, WallReport, WorstElement,
+    CellReport, CertificateReport, GivenUpFace, GridLinesReport, Input, Nodes, PatchReport, Projections, Report,
+    SCHEMA, SmoothingReport, StepReport, WallFailure, WallReport, WorstElement,
 };
 use crate::associate::Classification;
 use crate::certify::{Certificate, FaceFinding, Judged, Verdict};
@@ -17,7 +17,7 @@ use crate::curve::{Curved, Job};
 use crate::element::{Cell, Order, Samples, basis};
 use crate::formats::{Field, Support, Values};
 use crate::mesh::{EntityKey, Mesh};
-use crate::quality::Columns;
+use crate::quality::GridLines;
 
 /// Elements listed as worst.
 const LISTED: usize = 10;
@@ -29,8 +29,8 @@ const DISTANCE_DENSITY: usize = 3;
 pub fn report(job: &Job, curved: &Curved) -> Report {
     let mesh = &curved.mesh;
     let linked = |classification: &Classification| matches!(classification, Classification::Surface(_));
-    let (turning, (cells, patches)) =
-        rayon::join(|| turning(curved), || rayon::join(|| cells(curved), || patches(curved)));
+    let (grid_line_angles, (cells, patches)) =
+        rayon::join(|| grid_line_angles(curved), || rayon::join(|| cells(curved), || patches(curved)));
     Report {
         schema: SCHEMA,
         version: env!("CARGO_PKG_VERSION"),
@@ -49,7 +49,7 @@ pub fn report(job: &Job, curved: &Curved) -> Report {
         unlinked_faces: curved.association.faces.iter().filter(|h| !linked(h)).count(),
         given_up: curved.given_up.iter().map(|given| given_up(curved, given)).collect(),
         walls: walls(curved),
-        turning,
+        grid_line_angles,
         certificate: CertificateReport::new(mesh, &curved.certificate),
         smoothing: SmoothingReport {
             lower_orders: curved.lower_orders.clone(),
@@ -82,9 +82,9 @@ fn walls(curved: &Curved) -> WallReport {
     WallReport { faces, valid: faces - failed, folded, undecided: failed - folded, failures }
 }
 
-fn turning(curved: &Curved) -> TurningReport {
-    let columns = Columns::new(&curved.mesh, &curved.straight);
-    TurningReport { curved: columns.curved(&curved.mesh.points), linear: columns.linear(&curved.straight) }
+fn grid_line_angles(curved: &Curved) -> GridLinesReport {
+    let lines = GridLines::new(&curved.mesh, &curved.straight);
+    GridLinesReport { curved: lines.curved(&curved.mesh.points), linear: lines.linear(&curved.straight) }
 }
 
 fn cells(curved: &Curved) -> Vec<CellReport> {

@@ -11,7 +11,7 @@ mod text;
 use serde::Serialize;
 
 use crate::curve::LowerOrder;
-use crate::quality::Turning;
+use crate::quality::GridLineAngles;
 use crate::smooth::Summary;
 
 pub use build::{fields, report};
@@ -46,8 +46,8 @@ pub struct Report {
     pub given_up: Vec<GivenUpFace>,
     /// Whether the faces on the CAD are free of folds.
     pub walls: WallReport,
-    /// How lines off the wall turn from layer to layer.
-    pub turning: TurningReport,
+    /// Angles at which grid lines off the wall bend from layer to layer.
+    pub grid_line_angles: GridLinesReport,
     /// Bounds of the mesh's smallest J / J_c and scaled Jacobian.
     pub certificate: CertificateReport,
     /// What the smoother did.
@@ -171,13 +171,13 @@ pub struct WallFailure {
     pub place: [f64; 3],
 }
 
-/// Turning angles of layer columns ([`crate::quality::Columns`]).
+/// Grid-line angles ([`crate::quality::GridLines`]).
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct TurningReport {
+pub struct GridLinesReport {
     /// Of the curved mesh, between the tangents of its edges.
-    pub curved: Turning,
-    /// Of the same columns in the linear mesh.
-    pub linear: Turning,
+    pub curved: GridLineAngles,
+    /// Of the same grid lines in the linear mesh.
+    pub linear: GridLineAngles,
 }
 
 /// The certificate of the whole mesh.

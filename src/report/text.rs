@@ -23,7 +23,7 @@ impl fmt::Display for Report {
         for note in &self.notes {
             writeln!(f, "note: {note}")?;
         }
-        self.turning(f)?;
+        self.grid_line_angles(f)?;
         self.given_up(f)?;
         self.walls(f)?;
         self.certificate.verdict(self.certified, f)
@@ -59,15 +59,14 @@ impl Report {
         Ok(())
     }
 
-    fn turning(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (curved, linear) = (&self.turning.curved, &self.turning.linear);
+    fn grid_line_angles(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (curved, linear) = (&self.grid_line_angles.curved, &self.grid_line_angles.linear);
         if curved.angles == 0 {
             return Ok(());
         }
         writeln!(
             f,
-            "lines off the wall turn from layer to layer by {:.2} degrees at most in 99 % of {} places, {:.2} at worst \
-             (linear mesh: {:.2}, {:.2})",
+            "grid-line angles off the walls, in degrees: {:.2} at most in 99 % of {}, largest {:.2} (linear mesh: {:.2}, {:.2})",
             curved.p99, curved.angles, curved.max, linear.p99, linear.max
         )
     }

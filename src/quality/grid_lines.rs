@@ -1,9 +1,10 @@
-//! How smooth lines off the wall are: the angles by which they turn from layer to layer.
+//! How smooth grid lines off the wall are: the angles at which they bend from layer to layer.
 //!
-//! A *column* begins at a boundary node with the edge off the boundary that is nearest to the boundary's normal, and goes
-//! on, node by node, along the edge that continues its direction best. It lasts as long as the layers do: its edges are
-//! shorter than [`FLAT`] times the boundary's edges at its foot, and no edge turns by more than [`SHARP`] in the linear
-//! mesh. At each of its inner nodes the curved line turns by the angle between the tangents of the two edges that meet there.
+//! A *grid line* begins at a boundary node with the edge off the boundary that is nearest to the boundary's normal, and goes
+//! on, node by node, along the edge that continues its direction best. It ends where the layers do: its edges are
+//! shorter than [`FLAT`] times the boundary's edges at its foot, and no edge bends off the last by more than [`SHARP`] in the
+//! linear mesh. The *grid-line angle* at each of its inner nodes is that between the tangents of the two curved edges that
+//! meet there; 0 where the line goes straight on.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -12,19 +13,19 @@ use serde::Serialize;
 use crate::element::{Cell, basis, edge_nodes};
 use crate::mesh::{Block, Mesh, NodeId};
 
-/// Longest edge of a column, as a share of the mean boundary edge at its foot.
+/// Longest edge of a grid line, as a fraction of the mean boundary edge at its foot.
 const FLAT: f64 = 0.5;
-/// Cosine of the largest turn of a column in the linear mesh, and of its first edge off the normal: 45 degrees.
+/// Cosine of the largest angle of a grid line in the linear mesh, and of its first edge with the normal: 45 degrees.
 const SHARP: f64 = std::f64::consts::FRAC_1_SQRT_2;
-/// Most edges of a column.
+/// Most edges of a grid line.
 const LONGEST: usize = 1000;
 
-/// How columns turn, in degrees.
+/// Angles at the inner nodes of grid lines, in degrees.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Turning {
-    /// Number of columns with at least one inner node.
-    pub columns: usize,
-    /// Number of angles: inner nodes of columns.
+pub struct GridLineAngles {
+    /// Number of grid lines with at least one inner node.
+    pub lines: usize,
+    /// Number of angles: inner nodes of grid lines.
     pub angles: usize,
     /// The angle that 99 % of the angles do not exceed.
     pub p99: f64,
@@ -43,26 +44,26 @@ struct Ray {
     edge: u8,
 }
 
-/// The columns of a mesh: each the rays that follow each other.
-pub struct Columns<'a> {
+/// The grid lines of a mesh: each the rays that follow each other.
+pub struct GridLines<'a> {
     mesh: &'a Mesh,
-    columns: Vec<Vec<Ray>>,
+    lines: Vec<Vec<Ray>>,
 }
 
-impl<'a> Columns<'a> {
-    /// Finds the columns of `mesh`, an elevated mesh, in its unperturbed state: `straight` are the places of its nodes then.
+impl<'a> GridLines<'a> {
+    /// Finds the grid lines of `mesh`, an elevated mesh, in its unperturbed state: `straight` are the coordinates of its nodes then.
     /// Its elements of two dimensions are the boundary.
     #[must_use]
-    pub fn new(mesh: &'a Mesh, straight: &[DVec3]) -> Columns<'a> {
+    pub fn new(mesh: &'a Mesh, straight: &[DVec3]) -> GridLines<'a> {
         let rays = Rays::new(mesh);
         let feet = feet(mesh, straight);
-        let columns = feet.par_iter().map(|foot| column(&rays, foot, straight));
-        Columns { mesh, columns: columns.filter(|column| column.len() > 1).collect() }
+        let lines = feet.par_iter().map(|foot| line(&rays, foot, straight));
+        GridLines { mesh, lines: lines.filter(|line| line.len() > 1).collect() }
     }
 
-    /// The turns of the lines as curves through the nodes at `x`.
+    /// Angles between curved edges, their nodes at `x`.
     #[must_use]
-    pub fn curved(&self, x: &[DVec3]) -> Turning {
+    pub fn curved(&self, x: &[DVec3]) -> GridLineAngles {
         let order = self.mesh.order;
         let slopes = [0.0, 1.0].map(|s| basis::gradients(Cell::Line, order, [s, 0.0, 0.0]));
         let tangent = |ray: &Ray, at_end: bool| {
@@ -74,23 +75,23 @@ impl<'a> Columns<'a> {
             let along: DVec3 = edge.iter().zip(table).map(|(&n, slope)| x[nodes[n].index()] * slope[0]).sum();
             if forth { along } else { -along }
         };
-        self.turning(|below, above| angle(tangent(below, true), tangent(above, false)))
+        self.angles(|below, above| angle(tangent(below, true), tangent(above, false)))
     }
 
-    /// The turns of the lines as straight edges between the corners at `x`.
+    /// Angles between straight edges, their corners at `x`.
     #[must_use]
-    pub fn linear(&self, x: &[DVec3]) -> Turning {
+    pub fn linear(&self, x: &[DVec3]) -> GridLineAngles {
         let along = |ray: &Ray| x[ray.to.index()] - x[ray.from.index()];
-        self.turning(|below, above| angle(along(below), along(above)))
+        self.angles(|below, above| angle(along(below), along(above)))
     }
 
-    fn turning(&self, angle: impl Fn(&Ray, &Ray) -> f64 + Sync) -> Turning {
-        let of_column = |column: &'_ Vec<Ray>| column.windows(2).map(|w| angle(&w[0], &w[1])).collect::<Vec<_>>();
-        let mut angles: Vec<f64> = self.columns.par_iter().flat_map_iter(of_column).collect();
+    fn angles(&self, angle: impl Fn(&Ray, &Ray) -> f64 + Sync) -> GridLineAngles {
+        let of_line = |line: &'_ Vec<Ray>| line.windows(2).map(|w| angle(&w[0], &w[1])).collect::<Vec<_>>();
+        let mut angles: Vec<f64> = self.lines.par_iter().flat_map_iter(of_line).collect();
         angles.par_sort_unstable_by(f64::total_cmp);
         let rank = (angles.len() * 99).div_ceil(100).max(1) - 1;
-        Turning {
-            columns: self.columns.len(),
+        GridLineAngles {
+            lines: self.lines.len(),
             angles: angles.len(),
             p99: angles.get(rank).copied().unwrap_or(0.0),
             max: angles.last().copied().unwrap_or(0.0),
@@ -106,7 +107,7 @@ fn angle(a: DVec3, b: DVec3) -> f64 {
 /// The volume elements around every corner, from which rays are read.
 struct Rays<'a> {
     mesh: &'a Mesh,
-    /// Blocks of volume elements: number of the first element, and place in the mesh.
+    /// Blocks of volume elements: number of the first element, and index in the mesh.
     blocks: Vec<(usize, usize)>,
     /// Elements around each corner, by node: ranges of `around`.
     starts: Vec<u32>,
@@ -162,12 +163,12 @@ impl<'a> Rays<'a> {
     }
 }
 
-/// Where a column may begin.
+/// Where a grid line may begin.
 struct Foot {
     node: NodeId,
     /// Unit normal of the boundary, to either side.
     normal: DVec3,
-    /// Longest edge of the column.
+    /// Longest edge of the line.
     longest: f64,
     /// Neighbours on the boundary, sorted.
     ring: Vec<NodeId>,
@@ -199,23 +200,23 @@ fn foot(around: &[(NodeId, NodeId, NodeId, DVec3)], x: &[DVec3]) -> Foot {
     Foot { node, normal, longest: FLAT * mean, ring }
 }
 
-/// The rays of the column on a foot; empty where there are no layers.
-fn column(rays: &Rays, foot: &Foot, x: &[DVec3]) -> Vec<Ray> {
+/// The rays of the grid line from a foot; empty where there are no layers.
+fn line(rays: &Rays, foot: &Foot, x: &[DVec3]) -> Vec<Ray> {
     let along = |ray: &Ray| x[ray.to.index()] - x[ray.from.index()];
     let from = |node: NodeId| rays.from(node).into_iter().filter(|ray| along(ray).length() < foot.longest);
     let straightest = |a: &(f64, Ray), b: &(f64, Ray)| a.0.total_cmp(&b.0).then(b.1.to.cmp(&a.1.to));
     let enough = |&(cosine, _): &(f64, Ray)| cosine >= SHARP;
     let rising = from(foot.node).filter(|ray| foot.ring.binary_search(&ray.to).is_err());
     let first = rising.map(|ray| (along(&ray).normalize_or_zero().dot(foot.normal).abs(), ray));
-    let mut column = Vec::new();
+    let mut line = Vec::new();
     let mut next = first.max_by(straightest).filter(enough);
-    while let Some((_, ray)) = next.filter(|_| column.len() < LONGEST) {
-        column.push(ray);
+    while let Some((_, ray)) = next.filter(|_| line.len() < LONGEST) {
+        line.push(ray);
         let direction = along(&ray).normalize_or_zero();
         let onward = from(ray.to).map(|ray| (along(&ray).normalize_or_zero().dot(direction), ray));
         next = onward.max_by(straightest).filter(enough);
     }
-    column
+    line
 }
 
 #[cfg(test)]
@@ -228,7 +229,7 @@ mod tests {
     ///
     /// ```text
     /// z = 0.3 +-----+
-    ///         |     |   lines off the wall at the square's corners
+    ///         |     |   grid lines at the square's corners
     /// z = 0.0 +=====+   wall
     /// ```
     fn stack(order: Order) -> Mesh {
@@ -259,13 +260,13 @@ mod tests {
     }
 
     #[test]
-    fn straight_columns_do_not_turn() {
+    fn straight_grid_lines_have_no_angles() {
         for order in Order::all() {
             let mesh = stack(order);
-            let columns = Columns::new(&mesh, &mesh.points);
-            for turning in [columns.curved(&mesh.points), columns.linear(&mesh.points)] {
-                assert_eq!((turning.columns, turning.angles), (4, 8), "{order}");
-                assert!(turning.max < 1e-9, "{order}: {turning:?}");
+            let lines = GridLines::new(&mesh, &mesh.points);
+            for angles in [lines.curved(&mesh.points), lines.linear(&mesh.points)] {
+                assert_eq!((angles.lines, angles.angles), (4, 8), "{order}");
+                assert!(angles.max < 1e-9, "{order}: {angles:?}");
             }
         }
     }
@@ -273,7 +274,7 @@ mod tests {
     /// Each layer's line is the parabola `x += 4 b s (1 - s)`, `s` from 0 to 1 across the layer: its tangents lean by
     /// `atan(4 b / 0.1)` one way at the top and the other way at the next layer's bottom.
     #[test]
-    fn kinked_columns_turn_by_the_known_angle() {
+    fn kinked_grid_lines_have_the_known_angle() {
         for order in Order::all().skip(1) {
             let mesh = stack(order);
             let bow = 0.01;
@@ -282,18 +283,18 @@ mod tests {
                 *x + DVec3::X * (4.0 * bow * s * (1.0 - s))
             };
             let x: Vec<DVec3> = mesh.points.iter().map(bent).collect();
-            let columns = Columns::new(&mesh, &mesh.points);
+            let lines = GridLines::new(&mesh, &mesh.points);
             let expected = 2.0 * (4.0 * bow / 0.1f64).atan().to_degrees();
-            let turning = columns.curved(&x);
-            assert!((turning.max - expected).abs() < 1e-5 && (turning.p99 - expected).abs() < 1e-5, "{turning:?}");
-            assert!(columns.linear(&x).max < 1e-5);
+            let angles = lines.curved(&x);
+            assert!((angles.max - expected).abs() < 1e-5 && (angles.p99 - expected).abs() < 1e-5, "{angles:?}");
+            assert!(lines.linear(&x).max < 1e-5);
         }
     }
 
     #[test]
-    fn there_are_no_columns_without_layers() {
+    fn there_are_no_grid_lines_without_layers() {
         let mut mesh = stack(Order::LINEAR);
         mesh.points.iter_mut().for_each(|x| x.z *= 10.0);
-        assert_eq!(Columns::new(&mesh, &mesh.points).linear(&mesh.points), Turning::default());
+        assert_eq!(GridLines::new(&mesh, &mesh.points).linear(&mesh.points), GridLineAngles::default());
     }
 }
