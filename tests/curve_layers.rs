@@ -93,7 +93,7 @@ fn elements_beyond_are_straight_and_all_are_valid() {
         let own_bent = bent(&own.mesh, &straight);
         assert!((0..layers.len()).all(|e| !own_bent[e] || layers[e] <= n), "{n} of {reach} layers");
         assert!(count(&own_bent) > 0 && count(&own_bent) < count(&free_bent), "{n} of {reach} layers");
-        assert!(certify::mesh(&own.mesh, None, &Settings::default()).holds());
+        assert!(certify::mesh(&own.mesh, &own.mesh.points, None, &Settings::default()).holds());
         assert_eq!((own.told as usize, own.code), (own_bent.len() - count(&own_bent), code), "{n} of {reach} layers");
     }
     let deep = curved(folder.path(), &(reach + 1).to_string());

@@ -28,7 +28,8 @@ fn faces_that_were_taken_back_come_to_the_cad_again() {
     let sweeps = number(&report, "/smoothing/sweeps");
     assert!(sweeps > 80.0, "it did not go down the ladder, and shows nothing: {told}");
     assert!(report["given_up"].as_array().unwrap().is_empty(), "{told}");
-    assert!(certify::mesh(&formats::read(&out).unwrap(), None, &Settings::default()).holds());
+    let written = formats::read(&out).unwrap();
+    assert!(certify::mesh(&written, &written.points, None, &Settings::default()).holds());
     let c_jac = number(&report, "/smoothing/end/c_jac");
     assert!(c_jac > 0.2, "C_JAC {c_jac}");
 }
@@ -44,7 +45,7 @@ fn where_no_time_is_left_faces_keep_their_curve_of_p2() {
         let curved = curve(&job, &mut Impatient::new(3, patience)).unwrap();
         assert!(curved.smoothed.stopped && curved.certificate.holds(), "{patience}");
         assert!(
-            certify::mesh(&curved.mesh, None, &Settings::default()).holds(),
+            certify::mesh(&curved.mesh, &curved.mesh.points, None, &Settings::default()).holds(),
             "{patience}: not the mesh that was proven"
         );
         let given_up = curved.given_up;

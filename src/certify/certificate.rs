@@ -76,10 +76,11 @@ impl Certificate {
     }
 }
 
-/// Certifies a mesh; `unperturbed` as for [`MeshElements::new`].
+/// Certifies a mesh with its nodes at `positions`; `linear_corners` are the points of its linear nodes before they were moved,
+/// which `J_c` is taken from ([`MeshElements::new`]).
 #[must_use]
-pub fn mesh(mesh: &Mesh, unperturbed: Option<&[DVec3]>, settings: &Settings) -> Certificate {
-    certify(&MeshElements::new(mesh, unperturbed), settings)
+pub fn mesh(mesh: &Mesh, positions: &[DVec3], linear_corners: Option<&[DVec3]>, settings: &Settings) -> Certificate {
+    certify(&MeshElements::new(mesh, positions, linear_corners), settings)
 }
 
 /// Certifies all elements of a source. The certificate does not depend on the number of threads.

@@ -26,24 +26,25 @@ pub trait Elements: Sync {
 /// The volume elements of a mesh, numbered over its blocks in file order.
 #[derive(Clone, Debug)]
 pub struct MeshElements<'a> {
-    mesh: &'a Mesh,
+    order: Order,
+    positions: &'a [DVec3],
     unperturbed: Option<&'a [DVec3]>,
     blocks: Vec<(usize, &'a Block)>,
     count: usize,
 }
 
 impl<'a> MeshElements<'a> {
-    /// A mesh, and the points of its linear nodes before they were moved (the first of an elevated mesh's); without
-    /// them an element's reference is its own straight corners.
+    /// The elements of a mesh with its nodes at `positions`, and the points of its linear nodes before they were moved (the first
+    /// of an elevated mesh's); without these an element's reference is its own straight corners.
     #[must_use]
-    pub fn new(mesh: &'a Mesh, unperturbed: Option<&'a [DVec3]>) -> MeshElements<'a> {
+    pub fn new(mesh: &'a Mesh, positions: &'a [DVec3], unperturbed: Option<&'a [DVec3]>) -> MeshElements<'a> {
         let mut count = 0;
         let mut blocks = Vec::new();
         for (_, block) in mesh.blocks_of(3) {
             blocks.push((count, block));
             count += block.elements(mesh.order).len();
         }
-        MeshElements { mesh, unperturbed, blocks, count }
+        MeshElements { order: mesh.order, positions, unperturbed, blocks, count }
     }
 }
 
@@ -54,12 +55,12 @@ impl Elements for MeshElements<'_> {
 
     fn read(&self, element: usize, into: &mut Buffer) -> (Cell, Order) {
         let (first, block) = self.blocks[self.blocks.partition_point(|&(first, _)| first <= element) - 1];
-        let stride = block.stride(self.mesh.order);
+        let stride = block.stride(self.order);
         let nodes = &block.nodes[(element - first) * stride..][..stride];
-        into.points.extend(self.mesh.points_of(nodes));
+        into.points.extend(nodes.iter().map(|n| self.positions[n.index()]));
         if let Some(points) = self.unperturbed {
             into.corners.extend(nodes[..block.cell.corner_count()].iter().map(|n| points[n.index()]));
         }
-        (block.cell, self.mesh.order)
+        (block.cell, self.order)
     }
 }

@@ -105,18 +105,18 @@ fn a_mesh_is_read_by_its_blocks() -> Result<(), Box<dyn std::error::Error>> {
         ..Mesh::default()
     };
     let mut curved = elevate(&linear, Order::new(2)?)?.mesh;
-    let certificate = mesh(&curved, Some(&points), &Settings::default());
+    let certificate = mesh(&curved, &curved.points, Some(&points), &Settings::default());
     assert!(certificate.holds() && certificate.tallies[3].straight == 5);
     assert!((certificate.relative.lower - 1.0).abs() < 1e-9);
     let inner = curved.blocks[0].nodes[2 * 27 + 26];
     curved.points[inner.index()] += DVec3::new(0.6, 0.0, 0.0);
-    let certificate = mesh(&curved, Some(&points), &Settings::default());
+    let certificate = mesh(&curved, &curved.points, Some(&points), &Settings::default());
     assert_eq!(certificate.failures.len(), 1);
     let failure = certificate.failures[0];
     assert_eq!((failure.element, certificate.tallies[3].invalid), (2, 1));
     assert!((2.0..=3.0).contains(&failure.place.x), "{failure:?}");
     assert!(certificate.relative.lower < 0.0 && certificate.relative != Bounds::UNKNOWN);
-    assert_eq!(mesh(&curved, None, &Settings::default()).failures.len(), 1);
+    assert_eq!(mesh(&curved, &curved.points, None, &Settings::default()).failures.len(), 1);
     Ok(())
 }
 

@@ -49,7 +49,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
             Some(matched)
         }
     };
-    let certificate = certify::mesh(&mesh, unperturbed.as_deref(), &Settings::default());
+    let certificate = certify::mesh(&mesh, &mesh.points, unperturbed.as_deref(), &Settings::default());
     let report = CheckReport::new(&options.mesh, &mesh, &certificate);
     if let Some(path) = &options.report {
         write_json(path, &report)?;

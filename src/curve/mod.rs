@@ -332,7 +332,7 @@ fn read_linear(path: &Path) -> Result<Mesh, PipelineError> {
     if linear.element_count(3) == 0 {
         return Err(PipelineError::NoVolume { mesh });
     }
-    let certificate = certify::mesh(&linear, None, &certify::Settings::default());
+    let certificate = certify::mesh(&linear, &linear.points, None, &certify::Settings::default());
     if !certificate.holds() {
         let tags: Vec<u64> = linear.blocks_of(3).flat_map(|(_, block)| block.tags.iter().copied()).collect();
         let some = certificate.failures.iter().take(LISTED).map(|f| format!("{} {}", f.cell, tags[f.element]));

@@ -27,7 +27,7 @@ impl Proof {
     /// Judges a mesh; `linear` are the places of its linear nodes before they were moved.
     #[must_use]
     pub fn of(mesh: &Mesh, linear: &[DVec3], boundary: &Boundary, association: &Association) -> Proof {
-        let certificate = certify::mesh(mesh, Some(linear), &certify::Settings::default());
+        let certificate = certify::mesh(mesh, &mesh.points, Some(linear), &certify::Settings::default());
         Proof { certificate, walls: walls(mesh, linear, boundary, association, |_| true) }
     }
 

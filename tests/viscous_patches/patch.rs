@@ -46,7 +46,7 @@ impl Patch {
         let mut random = Random(case.seed);
         for rejected in 0..ATTEMPTS {
             let patch = Patch::attempt(case, &mut random);
-            if certify::mesh(&patch.mesh, None, &Settings::default()).holds() {
+            if certify::mesh(&patch.mesh, &patch.mesh.points, None, &Settings::default()).holds() {
                 return Patch { rejected, ..patch };
             }
         }

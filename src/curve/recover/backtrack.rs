@@ -67,7 +67,7 @@ pub fn retreat(
             }
         }
         periodic.apply(&mut mesh.points);
-        let subset = Subset { whole: MeshElements::new(mesh, Some(linear)), elements: &touched };
+        let subset = Subset { whole: MeshElements::new(mesh, &mesh.points, Some(linear)), elements: &touched };
         let outcome = certify::certify(&subset, &certify::Settings::default());
         failing = outcome.failures.iter().map(|judged| touched[judged.element]).collect();
         let moved = |f: usize| boundary.nodes(f, mesh).iter().any(|n| shares[n.index()] < 1.0);
