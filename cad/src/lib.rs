@@ -11,45 +11,35 @@
 //! The search runs on plain arrays (closed forms, Bezier spans with their control hulls, OCCT's own parameters); the answer is
 //! evaluated by OCCT on the original surface. This crate knows no mesh.
 #![forbid(unsafe_code)]
+#![cfg_attr(not(feature = "occt"), allow(dead_code))] // of the box tree, what only the search uses
 
-mod assemble;
-mod bezier;
 mod boxes;
-mod certificate;
-mod chart;
 pub mod child;
-mod closed_form;
-mod curve;
-mod finish;
-mod foot;
-mod format;
-mod group;
-mod health;
-mod hint;
+#[cfg(feature = "occt")]
+mod closest;
+#[cfg(feature = "occt")]
+mod geometry;
 mod ids;
-mod import;
-mod leaf;
+#[cfg(feature = "occt")]
 mod model;
-mod newton;
-mod payload;
-mod reader;
-mod reference;
-mod search;
-mod sewing;
-mod slab;
+#[cfg(feature = "occt")]
+mod read;
 pub mod tolerance;
-mod trim;
 mod unit;
 
 pub use boxes::{Aabb, BoxTree, Nearest};
-pub use foot::{CurvePoint, Doubt, End, Evaluation, Foot, SurfacePoint};
-pub use group::{Group, GroupError};
-pub use health::{Health, TrimFault};
-pub use hint::Hint;
 pub use ids::{EdgeId, EntityId, FaceId, VertexId};
-pub use import::{ReadError, ReadOptions};
-pub use model::{Edge, Face, Kind, Label, Model, NamedGroup, SourceFormat, Unit, Vertex};
-pub use reader::{READER_SUBCOMMAND, serve_reader};
-pub use reference::ReferenceError;
-pub use sewing::Sewing;
 pub use unit::unit_factor;
+
+#[cfg(feature = "occt")]
+pub use {
+    closest::foot::{Doubt, End, Foot},
+    closest::group::{Group, GroupError},
+    closest::hint::Hint,
+    geometry::evaluation::{CurvePoint, Evaluation, SurfacePoint},
+    model::health::{Health, TrimFault},
+    model::reference::ReferenceError,
+    model::{Edge, Face, Kind, Label, Model, NamedGroup, Sewing, SourceFormat, Unit, Vertex},
+    read::import::{ReadError, ReadOptions},
+    read::reader::{READER_SUBCOMMAND, serve_reader},
+};

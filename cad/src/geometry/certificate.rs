@@ -5,8 +5,8 @@
 //! `G`, `q` the products `(S − c)·S''` and `df` the change of `S''`. `S''` is sampled (4 × 4 points), `S` ranges over the hull, and the
 //! three are widened by [`BOUND_SAFETY`]; the leaf is certified while the smallest eigenvalue at the centre exceeds their sum.
 
-use crate::chart::{Chart, Jet, Rect};
-use crate::curve::{Curve, Hull};
+use crate::geometry::chart::{Chart, Jet, Rect};
+use crate::geometry::curve::{Curve, Hull};
 use crate::tolerance::BOUND_SAFETY;
 use glam::DVec3;
 

@@ -1,7 +1,7 @@
 //! Curves as the search sees them: plain arrays with OCCT's own parameters, and control hulls.
 
-use crate::bezier::{Bernstein, Knots, project, quotient, restrict};
 use crate::boxes::Aabb;
+use crate::geometry::bezier::{Bernstein, Knots, project, quotient, restrict};
 use crate::tolerance::BOUND_SAFETY;
 use glam::{DVec3, DVec4};
 use opencascade_sys as sys;

@@ -1,6 +1,6 @@
 //! Oriented boxes: a leaf in the frame of its tangents, which is far thinner than its axis-aligned box.
 
-use crate::curve::Hull;
+use crate::geometry::curve::Hull;
 use glam::DVec3;
 
 /// A box with its own axes.

@@ -1,12 +1,12 @@
 //! Faces and edges cut into leaves: small pieces with a hull box each and, where possible, a certificate.
 
 use crate::boxes::Aabb;
-use crate::certificate::Certificate;
-use crate::chart::{Chart, Rect, SurfaceHandle};
-use crate::curve::{Curve, CurveHandle, Hull};
-use crate::slab::Slab;
+use crate::geometry::certificate::Certificate;
+use crate::geometry::chart::{Chart, Rect, SurfaceHandle};
+use crate::geometry::curve::{Curve, CurveHandle, Hull};
+use crate::geometry::slab::Slab;
+use crate::geometry::trim::Trim;
 use crate::tolerance::{LEAF_DEPTH, LEAF_TURN, POINT, TRIM_DEPTH};
-use crate::trim::Trim;
 use opencascade_sys as sys;
 
 /// A piece of a face.

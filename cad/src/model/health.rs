@@ -1,9 +1,9 @@
 //! What may be wrong with a CAD model: the data of `sagitta info`.
 
+use crate::geometry::leaf::Side;
+use crate::geometry::newton;
 use crate::ids::{EdgeId, FaceId};
-use crate::leaf::Side;
-use crate::model::{Kind, Model};
-use crate::newton;
+use crate::model::{Edge, Kind, Model};
 use crate::tolerance::{LOOSE, TINY, TRIM_GAP};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -100,7 +100,7 @@ impl Model {
         health
     }
 
-    fn edges_where(&self, wanted: impl Fn(&crate::Edge) -> bool) -> Vec<EdgeId> {
+    fn edges_where(&self, wanted: impl Fn(&Edge) -> bool) -> Vec<EdgeId> {
         self.edges().iter().filter(|edge| wanted(edge)).map(|edge| edge.id).collect()
     }
 

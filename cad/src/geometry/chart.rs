@@ -3,8 +3,8 @@
 //! No conversion to NURBS takes place: elementary and swept surfaces keep their closed forms and B-splines are cut into Bezier
 //! spans, so that parameters, pcurves and trims are those of the file.
 
-use crate::bezier::{Knots, patch_d2, project, quotient, restrict};
-use crate::curve::{Curve, Hull, axes, homogeneous, knots_within, ranges, shift_into};
+use crate::geometry::bezier::{Knots, patch_d2, project, quotient, restrict};
+use crate::geometry::curve::{Curve, Hull, axes, homogeneous, knots_within, ranges, shift_into};
 use crate::tolerance::BOUND_SAFETY;
 use glam::{DVec3, DVec4};
 use opencascade_sys as sys;

@@ -4,8 +4,8 @@
 //! polygons, so the answer is exact up to rounding on the curves themselves. Where pcurves of a wire do not
 //! quite meet they are joined by straight segments. Even–odd rule: orientation in files cannot be trusted.
 
-use crate::bezier::restrict;
-use crate::chart::Rect;
+use crate::geometry::bezier::restrict;
+use crate::geometry::chart::Rect;
 use crate::tolerance::TOUCH;
 use glam::{DVec2, DVec4};
 use opencascade_sys as sys;
@@ -116,7 +116,7 @@ impl Wire {
         let mut wire = Self(Vec::new());
         for (spans, reversed) in pcurves {
             let count = spans.degree_u as usize + 1;
-            let poles = crate::curve::homogeneous(&spans.poles);
+            let poles = crate::geometry::curve::homogeneous(&spans.poles);
             let mut pieces: Vec<Piece> = poles.chunks_exact(count).map(|points| Piece::new(points.to_vec())).collect();
             if reversed {
                 pieces.reverse();

@@ -2,10 +2,10 @@
 //! within tolerance are one edge of the part, whatever the topology says, and so is one that two or more shorter ones cover together.
 //! Projection on faces needs none of this.
 
+use crate::geometry::leaf::EdgeGeometry;
+use crate::geometry::newton;
 use crate::ids::{EdgeId, VertexId};
-use crate::leaf::EdgeGeometry;
-use crate::model::{Edge, Model};
-use crate::newton;
+use crate::model::{Edge, Model, Sewing};
 use crate::tolerance::SEWING;
 use glam::DVec3;
 
@@ -15,18 +15,9 @@ const SAMPLES: u32 = 9;
 /// Points inside an edge that are held against pieces that may cover it.
 const COVER_SAMPLES: u32 = 32;
 
-/// Which open edges are one.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Sewing {
-    /// Sets of edges that are the same curve within tolerance, each ascending, ordered by their first.
-    pub merged: Vec<Vec<EdgeId>>,
-    /// Edges that bound one face, on one side, and match no other.
-    pub open: Vec<EdgeId>,
-}
-
 impl Sewing {
     pub(crate) fn of(model: &Model) -> Self {
-        let mut open: Vec<&Edge> = model.edges().iter().filter(|edge| is_open(edge)).collect();
+        let mut open: Vec<&Edge> = model.edges().iter().filter(|edge| edge.is_open()).collect();
         let mut merged = Vec::new();
         for find in [Model::twins, Model::pieces] {
             let mut taken = vec![false; open.len()];
@@ -47,16 +38,6 @@ impl Sewing {
         merged.sort_unstable();
         Self { merged, open: open.into_iter().map(|edge| edge.id).collect() }
     }
-
-    /// All edges that are the same as `edge`, itself included.
-    pub fn same_as(&self, edge: EdgeId) -> Vec<EdgeId> {
-        let set = self.merged.iter().find(|set| set.contains(&edge));
-        set.cloned().unwrap_or_else(|| vec![edge])
-    }
-}
-
-fn is_open(edge: &Edge) -> bool {
-    edge.faces.len() == 1 && !edge.seam && !edge.degenerate
 }
 
 /// Distance of a point from an edge.

@@ -1,25 +1,25 @@
 //! The search for the closest point of a group.
 //!
 //! 1. A first foot from the hint's leaf or, without one, the leaf of the nearest sample. With a hint the search may end here: its
-//!    [leeways](crate::hint) tell which few other leaves can matter.
+//!    [leeways](crate::closest::hint) tell which few other leaves can matter.
 //! 2. Every leaf whose hull box is nearer than the best foot so far is visited: closed form, or Newton where the leaf's
-//!    [certificate](crate::certificate) says that one start is enough (given up as soon as convexity tells that the leaf is too
+//!    [certificate](crate::geometry::certificate) says that one start is enough (given up as soon as convexity tells that the leaf is too
 //!    far away), else the leaf is cut until it does.
 //! 3. The winner is evaluated by OCCT on the original surface or curve, and its residual checked there.
 //!
 //! The foot on a trimmed face is a minimum inside the trim or a point of a boundary edge, and the edges are leaves of the same tree.
 
 use crate::boxes::{Branch, Met};
-use crate::certificate::{Bowl, Certificate};
-use crate::chart::{Jet, Rect};
-use crate::closed_form;
-use crate::curve::Hull;
-use crate::foot::{Doubt, Foot};
-use crate::group::{Group, Member};
-use crate::hint::{Floors, Hint, Leeways};
-use crate::leaf::{EdgeGeometry, EdgeLeaf, FaceGeometry, FaceLeaf};
-use crate::newton::{self, Found, Local};
-use crate::slab::Slab;
+use crate::closest::foot::{Doubt, Foot};
+use crate::closest::group::{Group, Member};
+use crate::closest::hint::{Floors, Hint, Leeways};
+use crate::geometry::certificate::{Bowl, Certificate};
+use crate::geometry::chart::{Jet, Rect};
+use crate::geometry::closed_form;
+use crate::geometry::curve::Hull;
+use crate::geometry::leaf::{EdgeGeometry, EdgeLeaf, FaceGeometry, FaceLeaf};
+use crate::geometry::newton::{self, Found, Local};
+use crate::geometry::slab::Slab;
 use crate::tolerance::{CUT_BUDGET, POINT, TIE};
 use glam::DVec3;
 

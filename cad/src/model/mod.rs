@@ -1,9 +1,15 @@
 //! The CAD model: entities as plain data, and the geometry behind them.
 
+pub(crate) mod health;
+pub(crate) mod reference;
+mod sewing;
+
 use crate::boxes::Aabb;
+use crate::geometry::chart::surface_d2;
+use crate::geometry::curve::curve_d2;
+use crate::geometry::evaluation::{CurvePoint, Evaluation, SurfacePoint};
+use crate::geometry::leaf::{EdgeGeometry, FaceGeometry};
 use crate::ids::{EdgeId, EntityId, FaceId, VertexId};
-use crate::leaf::{EdgeGeometry, FaceGeometry};
-use crate::sewing::Sewing;
 use glam::DVec3;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -127,6 +133,13 @@ pub struct Edge {
     pub faces: Vec<FaceId>,
 }
 
+impl Edge {
+    /// Whether it bounds one face only, on one side.
+    pub(crate) fn is_open(&self) -> bool {
+        self.faces.len() == 1 && !self.seam && !self.degenerate
+    }
+}
+
 /// A vertex.
 #[derive(Clone, Debug)]
 pub struct Vertex {
@@ -151,6 +164,23 @@ pub struct NamedGroup {
     pub members: Vec<EntityId>,
 }
 
+/// Which open edges are one.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sewing {
+    /// Sets of edges that are the same curve within tolerance, each ascending, ordered by their first.
+    pub merged: Vec<Vec<EdgeId>>,
+    /// Edges that bound one face, on one side, and match no other.
+    pub open: Vec<EdgeId>,
+}
+
+impl Sewing {
+    /// All edges that are the same as `edge`, itself included.
+    pub fn same_as(&self, edge: EdgeId) -> Vec<EdgeId> {
+        let set = self.merged.iter().find(|set| set.contains(&edge));
+        set.cloned().unwrap_or_else(|| vec![edge])
+    }
+}
+
 /// What queries need, shared by the model and its groups.
 pub(crate) struct Geometry {
     pub(crate) faces: Vec<FaceGeometry>,
@@ -159,6 +189,22 @@ pub(crate) struct Geometry {
     pub(crate) ends: Vec<[Option<VertexId>; 2]>,
     /// Places and tolerances.
     pub(crate) vertices: Vec<(DVec3, f64)>,
+}
+
+impl Geometry {
+    pub(crate) fn evaluate(&self, entity: EntityId, [u, v]: [f64; 2]) -> Option<Evaluation> {
+        let evaluation = match entity {
+            EntityId::Face(id) => {
+                let face = self.faces.get(id.index())?;
+                Evaluation::Surface(SurfacePoint::new(surface_d2(&face.handle, u, v), face.reversed))
+            }
+            EntityId::Edge(id) => {
+                Evaluation::Curve(CurvePoint::new(curve_d2(&self.edges.get(id.index())?.as_ref()?.handle, u)))
+            }
+            EntityId::Vertex(id) => Evaluation::Vertex(self.vertices.get(id.index())?.0),
+        };
+        evaluation.point().is_finite().then_some(evaluation)
+    }
 }
 
 /// A CAD file, read. Plain data and immutable geometry: all of it may be used from any thread.
@@ -282,7 +328,7 @@ impl Model {
 
     /// Point and derivatives of an entity at OCCT's parameters, by OCCT. `None` where OCCT cannot evaluate, the entity does not
     /// exist, or is a degenerate edge.
-    pub fn evaluate(&self, entity: EntityId, parameters: [f64; 2]) -> Option<crate::Evaluation> {
+    pub fn evaluate(&self, entity: EntityId, parameters: [f64; 2]) -> Option<Evaluation> {
         self.geometry.evaluate(entity, parameters)
     }
 

@@ -1,8 +1,8 @@
 //! Nearest points of planes, cylinders, cones, spheres and tori over a leaf, without iteration.
 
-use crate::chart::{Axis, Chart, Rect};
-use crate::curve::Curve;
-use crate::newton::Local;
+use crate::geometry::chart::{Axis, Chart, Rect};
+use crate::geometry::curve::Curve;
+use crate::geometry::newton::Local;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 

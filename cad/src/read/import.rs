@@ -1,10 +1,10 @@
 //! Reading a CAD file: in a child process, because malformed files make OCCT crash or hang.
 
-use crate::assemble;
 use crate::child::{self, ChildError, Limits, Outcome};
 use crate::model::{Model, SourceFormat};
-use crate::payload::{self, Answer};
-use crate::reader::{READER_SUBCOMMAND, SCALE_VARIABLE};
+use crate::read::assemble;
+use crate::read::payload::{self, Answer};
+use crate::read::reader::{READER_SUBCOMMAND, SCALE_VARIABLE};
 use opencascade_sys as sys;
 use std::io;
 use std::os::unix::process::ExitStatusExt;
@@ -127,10 +127,10 @@ impl Model {
     /// [`ReadError`]: also when OCCT crashes, hangs or eats up the memory, which happens to the child process only.
     pub fn read(path: &Path, options: &ReadOptions) -> Result<Self, ReadError> {
         let owned = || path.to_path_buf();
-        match crate::format::detect(path) {
+        match crate::read::format::detect(path) {
             Err(source) => return Err(ReadError::Open { path: owned(), source }),
             Ok(None) => return Err(ReadError::Format { path: owned() }),
-            Ok(Some(SourceFormat::Iges)) if !crate::format::iges_is_whole(path).unwrap_or(true) => {
+            Ok(Some(SourceFormat::Iges)) if !crate::read::format::iges_is_whole(path).unwrap_or(true) => {
                 let cause = "the file is cut short: its terminate section is missing".to_owned();
                 return Err(ReadError::Refused { path: owned(), cause });
             }

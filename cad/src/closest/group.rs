@@ -1,10 +1,9 @@
 //! CAD groups: sets of faces, edges and vertices, with a tree of samples and a tree of hull boxes each.
 
 use crate::boxes::{Aabb, BoxTree};
-use crate::chart::surface_d2;
-use crate::curve::curve_d2;
-use crate::foot::{CurvePoint, Evaluation, Foot, SurfacePoint};
-use crate::hint::Hint;
+use crate::closest::foot::Foot;
+use crate::closest::hint::Hint;
+use crate::geometry::evaluation::Evaluation;
 use crate::ids::{EdgeId, EntityId, FaceId, VertexId};
 use crate::model::{Geometry, Model};
 use glam::DVec3;
@@ -272,19 +271,5 @@ impl Geometry {
             }),
             Member::Vertex { vertex, .. } => self.vertices[vertex as usize].0,
         }
-    }
-
-    pub(crate) fn evaluate(&self, entity: EntityId, [u, v]: [f64; 2]) -> Option<Evaluation> {
-        let evaluation = match entity {
-            EntityId::Face(id) => {
-                let face = self.faces.get(id.index())?;
-                Evaluation::Surface(SurfacePoint::new(surface_d2(&face.handle, u, v), face.reversed))
-            }
-            EntityId::Edge(id) => {
-                Evaluation::Curve(CurvePoint::new(curve_d2(&self.edges.get(id.index())?.as_ref()?.handle, u)))
-            }
-            EntityId::Vertex(id) => Evaluation::Vertex(self.vertices.get(id.index())?.0),
-        };
-        evaluation.point().is_finite().then_some(evaluation)
     }
 }

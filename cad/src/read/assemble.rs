@@ -1,13 +1,13 @@
 //! From OCCT's shape to a [`Model`]: the same code runs in the reading child, as a rehearsal, and in the parent.
 
 use crate::boxes::Aabb;
-use crate::chart::{Chart, Rect};
-use crate::curve::Curve;
+use crate::geometry::chart::{Chart, Rect};
+use crate::geometry::curve::Curve;
+use crate::geometry::leaf::{EdgeGeometry, FaceGeometry, Side, edge_leaves, face_leaves};
+use crate::geometry::trim::{Trim, Wire};
 use crate::ids::{EdgeId, EntityId, FaceId, VertexId};
-use crate::leaf::{EdgeGeometry, FaceGeometry, Side, edge_leaves, face_leaves};
 use crate::model::{Edge, Face, Geometry, Kind, Label, Model, NamedGroup, Vertex};
-use crate::payload::{Description, RawLabel};
-use crate::trim::{Trim, Wire};
+use crate::read::payload::{Description, RawLabel};
 use glam::DVec3;
 use opencascade_sys as sys;
 use rayon::prelude::*;

@@ -1,16 +1,16 @@
 //! The end of a search: the winner on OCCT's own geometry, polished, and how it ended.
 
 use crate::boxes::Branch;
-use crate::chart::{Jet, Rect, surface_d2};
-use crate::curve::curve_d2;
-use crate::foot::{Doubt, End, Foot};
-use crate::group::Member;
-use crate::hint::{Hint, Leeways};
+use crate::closest::foot::{Doubt, End, Foot};
+use crate::closest::group::Member;
+use crate::closest::hint::{Hint, Leeways};
+use crate::closest::search::{Best, Search};
+use crate::geometry::chart::{Jet, Rect, surface_d2};
+use crate::geometry::curve::curve_d2;
+use crate::geometry::leaf::{EdgeGeometry, FaceGeometry, FaceLeaf, Side};
+use crate::geometry::newton::{self, ROUNDING};
 use crate::ids::{EdgeId, EntityId, FaceId, VertexId};
-use crate::leaf::{EdgeGeometry, FaceGeometry, FaceLeaf, Side};
 use crate::model::Geometry;
-use crate::newton::{self, ROUNDING};
-use crate::search::{Best, Search};
 use crate::tolerance::{LEAF_MARGIN, ORTHOGONAL, POLISH_LIMIT, POLISHED, TIE};
 use glam::{DVec3, Vec3};
 

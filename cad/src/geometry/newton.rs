@@ -1,7 +1,7 @@
 //! The local problem: the nearest point within one leaf, by Newton's method on `½|S − x|²` with the leaf's range as bounds.
 
-use crate::chart::{Chart, Jet, Rect};
-use crate::curve::{Curve, CurveJet};
+use crate::geometry::chart::{Chart, Jet, Rect};
+use crate::geometry::curve::{Curve, CurveJet};
 use crate::tolerance::{NEWTON_LIMIT, NEWTON_STEP};
 use glam::DVec3;
 

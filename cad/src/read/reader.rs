@@ -1,15 +1,15 @@
 //! The reading child: the only process in which OCCT parses a file.
 
-use crate::assemble;
-use crate::chart::{Chart, Rect};
 use crate::child;
-use crate::curve::Curve;
-use crate::format;
-use crate::group::Group;
+use crate::closest::group::Group;
+use crate::geometry::chart::{Chart, Rect};
+use crate::geometry::curve::Curve;
+use crate::geometry::leaf::FaceGeometry;
 use crate::ids::{EdgeId, EntityId, FaceId};
-use crate::leaf::FaceGeometry;
 use crate::model::{Model, SourceFormat};
-use crate::payload::{self, Answer, Description, RawLabel};
+use crate::read::assemble;
+use crate::read::format;
+use crate::read::payload::{self, Answer, Description, RawLabel};
 use crate::tolerance::INFINITE;
 use glam::DVec3;
 use opencascade_sys as sys;

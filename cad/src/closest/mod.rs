@@ -1,0 +1,7 @@
+//! The closest point of a group of CAD entities: the search, its proof and its memory.
+
+mod finish;
+pub(crate) mod foot;
+pub(crate) mod group;
+pub(crate) mod hint;
+mod search;
