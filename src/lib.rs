@@ -46,9 +46,11 @@
 //! [`element`] is the one place that knows cells: their lattices, bases, sub-elements, sample tables and file orders.
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "cad")]
 pub mod associate;
 pub mod certify;
 pub mod cli;
+#[cfg(feature = "cad")]
 pub mod curve;
 pub mod element;
 pub mod formats;
@@ -56,4 +58,5 @@ pub mod mesh;
 pub mod quality;
 pub mod report;
 pub mod smooth;
+#[cfg(feature = "cad")]
 pub mod validate;

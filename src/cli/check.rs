@@ -6,8 +6,9 @@ use clap::Args;
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
-use super::{DONE, Failure, NOT_CERTIFIED, print, write_json};
 use crate::certify::{self, Settings};
+use crate::cli::exit::{DONE, NOT_CERTIFIED};
+use crate::cli::output::{Failure, print, write_json};
 use crate::formats;
 use crate::mesh::Mesh;
 use crate::report::CheckReport;

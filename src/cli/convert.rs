@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::form::Form;
-use super::{DONE, Failure, print};
+use crate::cli::exit::DONE;
+use crate::cli::output::{Failure, print};
 use crate::formats;
 
 /// Options of `sagitta convert`.

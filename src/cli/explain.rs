@@ -3,7 +3,8 @@
 use clap::Args;
 use linkage_schema::Code;
 
-use super::{DONE, Failure, print};
+use crate::cli::exit::DONE;
+use crate::cli::output::{Failure, print};
 
 /// Options of `sagitta explain`.
 #[derive(Args)]

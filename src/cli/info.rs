@@ -3,13 +3,12 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
-use cad::{Aabb, Health, Kind as EntityKind, Model, ReadOptions};
+use cad::Aabb;
 use clap::Args;
 
-use super::curve::positive;
-use super::{DONE, Failure, print};
+use crate::cli::exit::DONE;
+use crate::cli::output::{Failure, print};
 use crate::formats;
 use crate::mesh::Mesh;
 
@@ -19,7 +18,8 @@ pub(super) struct Options {
     /// A CAD, mesh or linkage file
     file: PathBuf,
     /// Seconds after which reading CAD is given up
-    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = positive)]
+    #[cfg(feature = "cad")]
+    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = super::with_cad::positive)]
     cad_timeout: f64,
 }
 
@@ -29,10 +29,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let text = match kind(path)? {
         Kind::Mesh => mesh(&formats::read(path)?)?,
         Kind::Linkage => linkage(path)?,
-        Kind::Cad => {
-            let timeout = Duration::from_secs_f64(options.cad_timeout);
-            model(&Model::read(path, &ReadOptions { timeout, ..ReadOptions::default() })?)?
-        }
+        Kind::Cad => cad_model(options)?,
     };
     print(&format!("{}: {}", path.display(), text.trim_end()))?;
     Ok(DONE)
@@ -60,7 +57,8 @@ fn kind(path: &Path) -> Result<Kind, Failure> {
     })
 }
 
-fn bounds(bounds: Aabb) -> String {
+/// A box in words.
+pub(super) fn bounds(bounds: Aabb) -> String {
     let [a, b] = [bounds.min, bounds.max];
     format!("box ({}, {}, {}) to ({}, {}, {})", a.x, a.y, a.z, b.x, b.y, b.z)
 }
@@ -110,60 +108,16 @@ fn linkage(path: &Path) -> Result<String, Failure> {
     Ok(text)
 }
 
-fn model(model: &Model) -> Result<String, Failure> {
-    let (faces, edges) = (model.faces(), model.edges());
-    let unit = model.unit();
-    let metres = unit.metres.map_or_else(String::new, |m| format!(" ({m} m)"));
-    let mut text = format!("{}, unit {}{metres}\n", model.format(), unit.name);
-    writeln!(text, "  {}", bounds(model.bounds()))?;
-    let health = model.health();
-    writeln!(text, "  {} faces{}", faces.len(), by_kind(&health.faces))?;
-    writeln!(text, "  {} edges{}", edges.len(), by_kind(&health.edges))?;
-    writeln!(text, "  {} vertices", health.vertices)?;
-    for face in faces {
-        let label = &face.label;
-        let name = if label.name.is_empty() { String::new() } else { format!("{:?}", label.name) };
-        let line = format!("  {} {} {} {name}", face.id, face.kind, label.reference);
-        writeln!(text, "{}", line.trim_end())?;
-    }
-    for group in model.groups() {
-        let members: Vec<String> = group.members.iter().map(ToString::to_string).collect();
-        let name = if group.name.is_empty() { &group.reference } else { &group.name };
-        writeln!(text, "  group {name:?}: {}", members.join(", "))?;
-    }
-    flaws(&mut text, &health)?;
-    Ok(text)
+#[cfg(feature = "cad")]
+fn cad_model(options: &Options) -> Result<String, Failure> {
+    super::with_cad::describe(&options.file, options.cad_timeout)
 }
 
-fn by_kind(counts: &BTreeMap<EntityKind, usize>) -> String {
-    let counts: Vec<String> = counts.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
-    if counts.is_empty() { String::new() } else { format!(": {}", counts.join(", ")) }
-}
-
-/// What may spoil a projection.
-fn flaws(text: &mut String, health: &Health) -> std::fmt::Result {
-    let list = |items: &mut dyn Iterator<Item = String>| items.collect::<Vec<_>>().join(", ");
-    let mut entities = |what: &str, ids: &[cad::EdgeId]| match ids {
-        [] => Ok(()),
-        _ => writeln!(text, "  {what}: {}", list(&mut ids.iter().map(ToString::to_string))),
-    };
-    entities("open edges", &health.open_edges)?;
-    entities("free edges", &health.free_edges)?;
-    entities("tiny edges", &health.tiny_edges)?;
-    for doubled in &health.doubled_edges {
-        writeln!(text, "  one edge in several pieces: {}", list(&mut doubled.iter().map(ToString::to_string)))?;
-    }
-    for face in &health.tiny_faces {
-        writeln!(text, "  tiny face: {face}")?;
-    }
-    for (face, fault) in &health.trims {
-        writeln!(text, "  boundary of {face}: {fault}")?;
-    }
-    for dropped in &health.dropped {
-        writeln!(text, "  dropped by the reader: {dropped}")?;
-    }
-    for warning in &health.warnings {
-        writeln!(text, "  warning: {warning}")?;
-    }
-    Ok(())
+#[cfg(not(feature = "cad"))]
+fn cad_model(options: &Options) -> Result<String, Failure> {
+    let path = options.file.display();
+    Err(format!(
+        "{path}: neither a mesh nor a linkage file; CAD is read by a sagitta that was built with the feature cad"
+    )
+    .into())
 }

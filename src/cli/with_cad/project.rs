@@ -10,9 +10,11 @@ use cad::{Aabb, EntityId, Foot, Group, Model, ReadOptions};
 use clap::Args;
 use glam::DVec3;
 
-use super::curve::positive;
+use super::points;
 use super::progress::{INTERVAL, Teller};
-use super::{DONE, Failure, NOT_CERTIFIED, points, print, write_json};
+use super::values::positive;
+use crate::cli::exit::{DONE, NOT_CERTIFIED};
+use crate::cli::output::{Failure, print, write_json};
 use crate::formats;
 use crate::report::{CadReport, FeetReport};
 
@@ -21,7 +23,7 @@ const CHUNK: usize = 1 << 14;
 
 /// Options of `sagitta project`.
 #[derive(Args)]
-pub(super) struct Options {
+pub(in crate::cli) struct Options {
     /// The CAD: STEP, IGES or BREP
     cad: PathBuf,
     /// CSV file with columns x, y, z; `-` for stdin

@@ -6,21 +6,20 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{
-    CellReport, CertificateReport, GivenUpFace, GridLinesReport, Input, Nodes, PatchReport, Projections, Report,
-    SCHEMA, SmoothingReport, StepReport, WallFailure, WallReport, WorstElement,
+    CellReport, GivenUpFace, GridLinesReport, Input, Nodes, PatchReport, Projections, Report, SCHEMA, SmoothingReport,
+    StepReport, WallFailure, WallReport,
 };
 use crate::associate::Classification;
-use crate::certify::{Certificate, FaceFinding, Judged, Verdict};
+use crate::certify::{FaceFinding, Verdict};
 use crate::curve::layers::straight_elements;
 use crate::curve::recover::backtrack::GivenUp;
 use crate::curve::{Curved, Job};
 use crate::element::{Cell, Order, Samples, basis};
 use crate::formats::{Field, Support, Values};
-use crate::mesh::{EntityKey, Mesh};
+use crate::mesh::EntityKey;
 use crate::quality::GridLines;
+use crate::report::CertificateReport;
 
-/// Elements listed as worst.
-const LISTED: usize = 10;
 /// Divisions of a face, in multiples of p, at which its distance from the CAD is sampled.
 const DISTANCE_DENSITY: usize = 3;
 
@@ -166,31 +165,6 @@ fn given_up(curved: &Curved, given: &GivenUp) -> GivenUpFace {
         order: given.order.get(),
         share: given.share,
         place: middle.to_array(),
-    }
-}
-
-impl CertificateReport {
-    /// A certificate with the file's element numbers.
-    #[must_use]
-    pub fn new(mesh: &Mesh, certificate: &Certificate) -> CertificateReport {
-        let tags: Vec<u64> = mesh.blocks_of(3).flat_map(|(_, block)| block.tags.iter().copied()).collect();
-        let worst = |judged: &Judged| WorstElement {
-            element: tags[judged.element],
-            cell: judged.cell.name(),
-            verdict: match judged.finding.verdict {
-                Verdict::Valid => "valid",
-                Verdict::Invalid { .. } => "invalid",
-                Verdict::Undecided => "undecided",
-            },
-            relative: [judged.finding.relative.lower, judged.finding.relative.upper],
-            place: judged.place.to_array(),
-        };
-        let weakest = certificate.worst_relative.iter().filter(|j| j.finding.verdict.is_valid()).take(LISTED);
-        CertificateReport {
-            relative: [certificate.relative.lower, certificate.relative.upper],
-            scaled: [certificate.scaled.lower, certificate.scaled.upper],
-            worst: certificate.failures.iter().chain(weakest).map(worst).collect(),
-        }
     }
 }
 

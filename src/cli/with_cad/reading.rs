@@ -5,7 +5,7 @@ use std::time::Duration;
 use cad::ReadOptions;
 use clap::Args;
 
-use super::curve::positive;
+use super::values::positive;
 
 /// Options of reading CAD.
 #[derive(Args)]

@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::time::Instant;
 
-use super::Failure;
 use super::progress::Teller;
+use crate::cli::output::Failure;
 use crate::curve::{Observer, Step};
 use crate::element::Order;
 use crate::formats;

@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use cad::{Model, ReadOptions};
 use clap::Args;
 
-use super::curve::positive;
 use super::reading::Reading;
-use super::{DONE, Failure, print, write_json};
+use super::values::positive;
 use crate::associate::{self, AssociateError, Candidates, Inference, Tolerance, associate, infer};
+use crate::cli::exit::DONE;
+use crate::cli::output::{Failure, print, write_json};
 use crate::formats;
 use crate::mesh::{Boundary, Mesh};
 use crate::validate::read_linear;
@@ -18,7 +19,7 @@ const MAX_OFFSET: f64 = 1e-3;
 
 /// Options of `sagitta link`.
 #[derive(Args)]
-pub(super) struct Options {
+pub(in crate::cli) struct Options {
     /// The linear mesh: MSH, CGNS, UGRID, SU2, VTU, legacy VTK or PLOT3D
     mesh: PathBuf,
     /// The CAD it was made on: STEP, IGES or BREP

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::INTERRUPTED;
+use crate::cli::exit::INTERRUPTED;
 use crate::curve::{Observer, Step};
 use crate::element::Order;
 use crate::smooth::Progress;

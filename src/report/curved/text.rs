@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{CertificateReport, Report};
+use super::Report;
 
 /// Failures that are listed.
 const LISTED: usize = 10;
@@ -125,22 +125,5 @@ impl Report {
         let steps: Vec<String> = self.seconds.iter().map(|s| format!("{} {:.2}", s.step, s.seconds)).collect();
         let memory = self.peak_memory as f64 / 1e6;
         writeln!(f, "seconds: {}; {} threads, peak memory {memory:.0} MB", steps.join(", "), self.threads)
-    }
-}
-
-impl CertificateReport {
-    /// The verdict in words.
-    pub(super) fn verdict(&self, certified: bool, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [lower, upper] = self.relative;
-        if certified {
-            return write!(f, "certified: every element valid, J/Jc >= {lower:.4} everywhere (attained: {upper:.4})");
-        }
-        let failures = || self.worst.iter().filter(|w| w.verdict != "valid");
-        write!(f, "NOT certified: {} elements", failures().count())?;
-        for w in failures().take(LISTED) {
-            let [x, y, z] = w.place;
-            write!(f, "\n  {} {} {} near ({x:.6}, {y:.6}, {z:.6})", w.verdict, w.cell, w.element)?;
-        }
-        Ok(())
     }
 }

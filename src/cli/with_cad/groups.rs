@@ -8,15 +8,16 @@ use cad::{Aabb, Label, Model, ReadOptions};
 use clap::Args;
 use serde::Serialize;
 
-use super::curve::positive;
-use super::{DONE, Failure, print};
+use super::values::positive;
+use crate::cli::exit::DONE;
+use crate::cli::output::{Failure, print};
 
 /// Name and version of the JSON document.
 const SCHEMA: &str = "sagitta-groups-1";
 
 /// Options of `sagitta groups`.
 #[derive(Args)]
-pub(super) struct Options {
+pub(in crate::cli) struct Options {
     /// A CAD file: STEP, IGES or BREP
     cad: PathBuf,
     /// Print JSON

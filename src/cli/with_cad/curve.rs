@@ -6,13 +6,15 @@ use std::time::Duration;
 
 use clap::Args;
 
-use super::form::Form;
 use super::keeper::Keeper;
 use super::progress::Teller;
 use super::reading::Reading;
 use super::trace::Trace;
-use super::{DONE, Failure, GIVEN_UP, NOT_CERTIFIED, STOPPED, print, write_json};
+use super::values::positive;
 use crate::associate::Choice;
+use crate::cli::exit::{DONE, GIVEN_UP, NOT_CERTIFIED, STOPPED};
+use crate::cli::form::Form;
+use crate::cli::output::{Failure, print, write_json};
 use crate::curve::{self, Curved, Job};
 use crate::element::Order;
 use crate::formats;
@@ -21,7 +23,7 @@ use crate::smooth;
 
 /// Options of `sagitta curve`.
 #[derive(Args)]
-pub(super) struct Options {
+pub(in crate::cli) struct Options {
     /// The linear mesh: MSH, CGNS, UGRID, SU2, VTU, legacy VTK or PLOT3D
     mesh: PathBuf,
     /// The CAD it was made on: STEP, IGES or BREP
@@ -117,12 +119,6 @@ fn order(text: &str) -> Result<Order, String> {
     let wrong = || format!("{text:?} is not an order: give 2, 3 or 4");
     let order = text.trim_start_matches(['P', 'p']).parse::<usize>().ok().and_then(|p| Order::new(p).ok());
     order.filter(|&order| order > Order::LINEAR).ok_or_else(wrong)
-}
-
-/// A finite number above 0.
-pub(super) fn positive(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok().filter(|v| v.is_finite() && *v > 0.0);
-    value.ok_or_else(|| format!("{text:?} is not a positive number"))
 }
 
 fn share(text: &str) -> Result<f64, String> {

@@ -4,14 +4,15 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::curve::positive;
 use super::reading::Reading;
-use super::{DONE, FINDINGS, Failure, print};
+use super::values::positive;
+use crate::cli::exit::{DONE, FINDINGS};
+use crate::cli::output::{Failure, print};
 use crate::validate::{self, Job};
 
 /// Options of `sagitta validate`.
 #[derive(Args)]
-pub(super) struct Options {
+pub(in crate::cli) struct Options {
     /// The MeshLink file
     linkage: PathBuf,
     /// The linear mesh that it speaks of
