@@ -5,8 +5,8 @@
 //! `2 p - 1` by axis on quadrilaterals, and is treated as the volume's Jacobians are: Bernstein coefficients with a bound
 //! of their rounding, halved until decided.
 //!
-//! `m` is not the only vector that will do: a face whose normals have a positive product with any one vector is a graph over the
-//! plane across it, without folds and without crossing itself. On a strongly curved wall a coarse face rightly leans by more
+//! `m` is not the only vector that will do: where the face's normals all have a positive product with any one vector, its projection along
+//! that vector is locally one-to-one: the face has no fold. On a strongly curved wall a coarse face rightly leans by more
 //! than 90 degrees against its linear face: those of the torus at scale 0.5 stand at up to 87 degrees to the wall itself in their
 //! corners. Where `m` does not prove it, another vector is asked for, on the side of `m`: the middle of the face's own normals, if
 //! a survey finds them all on the side of the CAD's normals ([`crate::curve::proof`]); a face that doubles back over its wall is none such.

@@ -1,4 +1,5 @@
 //! How far rounding can have moved the computed Bernstein coefficients: a proven bound, the same scheme for all cells.
+//! Every constant is derived in `docs/theory.md`, section 9.
 //!
 //! Write `gamma_n = n r / (1 - n r)` for `n` operations of relative error `r` (`Real::ROUNDOFF`), `|.|` and `<=` by
 //! components, `perm` for the permanent of three columns.
@@ -6,23 +7,23 @@
 //! 1. Nodes are shifted by the first corner, `y = fl(x - x_0)`, with relative error `<= u` (none in pairs of `f64`),
 //!    and scaled by a power of two, exactly.
 //! 2. A scaled column coefficient is `sum M y` with integer `M` (exact in `f64`) of at most `N` terms: `N` products and
-//!    sums and the shift give `|err| <= gamma_(N+1) sum |M| |y|`. Unscaled: `eps = gamma_(N+1) R max |y|`, where `R` is
-//!    the largest `sum |M| / weight` of a row.
+//!    sums and the shift give `|err| <= (gamma_N + u) sum |M| |y|`. Unscaled: `eps = (gamma_N + u) R max |y|`, where `R`
+//!    is the largest `sum |M| / weight` of a row.
 //! 3. A coefficient of the determinant is a mean, with positive weights that sum to 1, of determinants of unscaled
-//!    column coefficients (`knowledge/maths.md` §3). With `a_k` the largest components of column `k`, computed,
+//!    column coefficients (`docs/theory.md`, section 7). With `a_k` the largest components of column `k`, computed,
 //!    - wrong columns move it by at most `perm(a + eps) - perm(a)`, summed here as
 //!      `perm(eps_1, a_2 + eps_2, a_3 + eps_3) + perm(a_1, eps_2, a_3 + eps_3) + perm(a_1, a_2, eps_3)`;
-//!    - its own evaluation moves it by at most `gamma_K perm(a)`: cross product (1 product, 1 difference, one sum a
-//!      pair), dot product (1 product, 2 sums, one sum a pair), division and rounding to `f64`, so
-//!      `K = pairs_cross + pairs_dot + 7`; in pairs of `f64` the last two cost `3 u |coefficient|` more.
+//!    - its own evaluation moves it by at most `gamma_K perm(a + eps)`: cross product (1 product, 1 difference, one sum a
+//!      pair), dot product (1 product, 2 sums, one sum a pair), division and rounding to `f64`, 4 more than
+//!      the pairs; `K = pairs_cross + pairs_dot + 7`. In pairs of `f64` the last two cost `3 u |coefficient|` more.
 //!
 //! The bounds are sums of positive terms, evaluated in `f64` and enlarged by 1 % for their own rounding; [`UNDERFLOW`]
 //! covers products that are too small for a normal `f64`.
 
 use super::real::{Real, UNIT};
 
-/// Far more than all underflows of one element can add up to, its coordinates being scaled to size 1: fewer than
-/// `1e6` terms, each off by at most `2^-1074` times factors below `1e20`.
+/// More than all underflows in one coefficient can add up to, the coordinates being scaled to size 1: fewer than `1e8`
+/// products, each off by at most `2^-1074`, times factors below `1e23`; ten times that in pairs of `f64`.
 const UNDERFLOW: f64 = 1e-290;
 
 /// Covers the rounding of a sum of positive terms.

@@ -3,7 +3,7 @@
 //! A point of a cell is given by its *chart* coordinates: the unit cell's own for all cells but the pyramid, whose
 //! chart is the cube `(a, b, c)` with `x = a(1-c), y = b(1-c), z = c`. There the pyramid's basis
 //! `B^p_m(s) B^m_i(a) B^m_j(b)`, `s = 1-c`, spans the rational pyramid space, and the derivatives returned by
-//! [`gradients`] are polynomials, finite at the apex too (`knowledge/maths.md` §3).
+//! [`gradients`] are polynomials, finite at the apex too (`docs/theory.md`, section 7).
 
 use super::{Cell, Order, lattice};
 

@@ -1,7 +1,7 @@
 //! Equispaced lattices in the internal node order, which is that of CGNS (SIDS): corners, edges, faces, interior.
 //!
 //! SIDS words place some interior P4 nodes at centroids of sub-triangles; its figures, Gmsh and the solvers
-//! use the equispaced lattice, and so does this module (`knowledge/formats.md` §1.2).
+//! use the equispaced lattice, and so does this module.
 
 use std::sync::OnceLock;
 

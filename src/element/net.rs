@@ -2,7 +2,7 @@
 //!
 //! A polynomial's coefficients times their multinomial weights, its *scaled* net, multiply by plain convolution: the
 //! scaled net of a product is the sum over pairs of indices that add up, and degrees add up as well
-//! (`knowledge/maths.md` §3). Indices are those of the cell's lattice.
+//! (`docs/theory.md`, section 7). Indices are those of the cell's lattice.
 
 use super::bernstein::binomial;
 use super::{Cell, Order};

@@ -2,7 +2,7 @@
 //!
 //! A tet of order p falls into `p^3` linear tets, of which the octahedra inside can be cut along any of three
 //! diagonals: in a viscous layer the one that touches the layer-normal edge is always wrong
-//! (`knowledge/maths.md` §2), so all three cuts are offered and the caller takes, per element, the one whose worst
+//! (`docs/theory.md`, section 2), so all three cuts are offered and the caller takes, per element, the one whose worst
 //! sub-tet is best. Hexes, prisms and pyramids give a tetrahedron at each corner of each linear sub-element (the
 //! pyramids' at the four corners of the base: an apex has no corner tetrahedron).
 

@@ -18,7 +18,7 @@ pub fn blend(alpha: f64, c_wcn: f64, c_jac: f64) -> f64 {
 /// `beta = 1 - C_w`.
 ///
 /// For `C_w <= 0` the cost is `C_w` itself: as printed, the equation there rewards making the other cells worse
-/// (`knowledge/maths.md` §6).
+/// (`docs/theory.md`, section 1).
 #[must_use]
 pub fn nodal(worst: f64, mean: f64) -> f64 {
     if worst <= 0.0 {

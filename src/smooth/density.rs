@@ -1,6 +1,6 @@
 //! What one sample of an element contributes to the objective, with first and second derivatives.
 //!
-//! Along one node every quantity of a sample is simple (`knowledge/maths.md` §1): moving it by `d` changes
+//! Along one node every quantity of a sample is simple (`docs/theory.md`, section 3): moving it by `d` changes
 //! `T = A W^-1` to `T + d g^T`, so that `|T|^2` and `|adj T|^2` are quadratic in `d` and `det T` is affine. A node's
 //! gradient and exact 3x3 Hessian therefore cost little more than the value.
 //!

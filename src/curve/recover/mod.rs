@@ -1,4 +1,4 @@
-//! What is done where elements are not proven valid, or faces on the CAD not free of folds, after smoothing (design §7): never a worse
+//! What is done where elements are not proven valid, or faces on the CAD not free of folds, after smoothing (`docs/theory.md`, section 11): never a worse
 //! mesh.
 //!
 //! 1. Smooth again, with surveys twice as dense, where elements fail.
