@@ -7,7 +7,7 @@ mod common;
 use common::impatient::Impatient;
 use common::{json, number, root, sagitta};
 use sagitta::certify::{self, Settings};
-use sagitta::curve::{Job, curve};
+use sagitta::curve::Job;
 use sagitta::element::Order;
 use sagitta::formats;
 
@@ -26,7 +26,7 @@ fn faces_that_were_taken_back_come_to_the_cad_again() {
     let told = sagitta(files.iter().chain(&args!["--order", "3", "--max-sweeps", "20", "--quiet"])).expect(0).stdout;
     let report = json(&report);
     let sweeps = number(&report, "/smoothing/sweeps");
-    assert!(sweeps > 80.0, "it did not go down the ladder, and shows nothing: {told}");
+    assert!(sweeps > 80.0, "it did not go through recovery, and shows nothing: {told}");
     assert!(report["given_up"].as_array().unwrap().is_empty(), "{told}");
     let written = formats::read(&out).unwrap();
     assert!(certify::mesh(&written, &written.points, None, &Settings::default()).holds());
@@ -41,16 +41,16 @@ fn where_no_time_is_left_faces_keep_their_curve_of_p2() {
         let [mesh, cad, linkage] = ["msh", "step", "meshlink.xml"].map(torus);
         let mut job = Job::new(mesh, cad, Some(linkage), Order::new(3).unwrap());
         job.reading.reader = env!("CARGO_BIN_EXE_sagitta").into();
-        job.smoothing.max_sweeps = 20;
-        let curved = curve(&job, &mut Impatient::new(3, patience)).unwrap();
+        job.settings.smoothing.max_sweeps = 20;
+        let curved = job.run(&mut Impatient::new(3, patience)).unwrap();
         assert!(curved.smoothed.stopped && curved.certificate.holds(), "{patience}");
         assert!(
             certify::mesh(&curved.mesh, &curved.mesh.points, None, &Settings::default()).holds(),
             "{patience}: not the mesh that was proven"
         );
-        let given_up = curved.given_up;
-        assert!(!given_up.is_empty() && given_up.iter().all(|face| face.order.get() == 2), "{patience}: {given_up:?}");
-        given_up.iter().map(|face| face.share).fold(1.0, f64::min)
+        let off_cad = curved.off_cad;
+        assert!(!off_cad.is_empty() && off_cad.iter().all(|face| face.order.get() == 2), "{patience}: {off_cad:?}");
+        off_cad.iter().map(|face| face.fraction).fold(1.0, f64::min)
     };
     let (at_once, on_the_way) = (ended_after(1), ended_after(350));
     assert!(at_once < 0.5 && on_the_way > 0.5, "{at_once} {on_the_way}");

@@ -6,61 +6,49 @@ mod common;
 
 use std::collections::BTreeMap;
 
-use cad::{EntityId, FaceId, Group, Model, ReadOptions};
+use cad::{EntityId, FaceId, Model, ReadOptions};
 use common::fixture;
 use glam::DVec3;
-use sagitta::associate::{Association, Classification, Surface, classify};
-use sagitta::curve::periodic::PeriodicConstraint;
+use sagitta::associate::{Classification, Surface, classify};
+use sagitta::curve::Settings;
+use sagitta::curve::level::{Case, Level};
 use sagitta::curve::wall::fit::fit;
-use sagitta::curve::wall::{Projected, project};
+use sagitta::curve::wall::project;
 use sagitta::element::{Order, Samples, basis, interior_extension, interior_start};
 use sagitta::formats;
 use sagitta::mesh::Boundary;
-use sagitta::mesh::elevate::{Elevated, elevate};
+use sagitta::mesh::elevate::elevate;
 
 /// Points an edge, times the order, at which walls are measured; the fit itself takes 3.
 const DENSITY: usize = 7;
 
 /// Largest distance of each curved surface's faces from it.
-fn levels(
-    elevated: &Elevated,
-    boundary: &Boundary,
-    association: &Association,
-    projected: &Projected,
-) -> BTreeMap<usize, f64> {
-    let order = elevated.mesh.order;
+fn levels(level: &Level) -> BTreeMap<usize, f64> {
+    let Case { boundary, association, .. } = level.case;
+    let order = level.mesh().order;
     let mut levels = BTreeMap::new();
     for (f, (face, classification)) in boundary.faces.iter().zip(&association.faces).enumerate() {
         let Classification::Surface(surface) = *classification else { continue };
         if association.plane_of(*classification).is_some() {
             continue; // its inner edges are carried by the perturbation
         }
-        let nodes = boundary.nodes(f, &elevated.mesh);
+        let nodes = boundary.nodes(f, level.mesh());
         let samples = Samples::survey(face.cell, Order::LINEAR, DENSITY * order.get());
         for &at in &samples.points()[..samples.count()] {
-            let place = |n: usize| elevated.mesh.points[n] + projected.displacement[n];
             let values = basis::values(face.cell, order, at);
-            let x: DVec3 = nodes.iter().zip(values).map(|(n, v)| place(n.index()) * v).sum();
-            let level = levels.entry(surface).or_insert(0.0_f64);
-            *level = level.max(association.surfaces[surface].group.closest(x, None).distance);
+            let x: DVec3 = nodes.iter().zip(values).map(|(n, v)| level.displaced(*n) * v).sum();
+            let farthest = levels.entry(surface).or_insert(0.0_f64);
+            *farthest = farthest.max(association.surfaces[surface].group.closest(x, None).distance);
         }
     }
     levels
-}
-
-fn group(association: &Association, classification: Classification) -> &Group {
-    match classification {
-        Classification::Surface(surface) => &association.surfaces[surface].group,
-        Classification::Curve(curve) => &association.curves[curve].group,
-        _ => panic!("{classification:?} holds no node that slides"),
-    }
 }
 
 /// What the fit does to a fixture's wall.
 struct Outcome {
     before: BTreeMap<usize, f64>,
     after: BTreeMap<usize, f64>,
-    /// The longest slide, as a share of its edge.
+    /// The longest slide, as a fraction of its edge.
     slid: f64,
 }
 
@@ -71,20 +59,21 @@ impl Outcome {
         let reading = ReadOptions { reader: env!("CARGO_BIN_EXE_sagitta").into(), ..ReadOptions::default() };
         let model = Model::read(&fixture(case, "step"), &reading).unwrap();
         let association = classify(None, &linear, &boundary, &model, 1e-3, &|_| {}).unwrap().association;
-        let mut elevated = elevate(&linear, Order::new(order).unwrap()).unwrap();
-        let (periodic, _) = PeriodicConstraint::new(&mut elevated, &boundary, false);
-        let mut projected = project(&elevated, &boundary, &association, false);
-        let start = projected.displacement.clone();
-        let before = levels(&elevated, &boundary, &association, &projected);
-        fit(&elevated, &boundary, &association, &periodic, &mut projected);
-        let after = levels(&elevated, &boundary, &association, &projected);
+        let settings = Settings::new(Order::new(order).unwrap());
+        let case_of_all = Case { settings: &settings, boundary: &boundary, association: &association };
+        let (mut level, _) = Level::new(case_of_all, elevate(&linear, settings.order).unwrap());
+        project(&mut level);
+        let start = level.wall.displacements();
+        let before = levels(&level);
+        fit(&mut level);
+        let after = levels(&level);
         let mut slid = 0.0_f64;
-        for (n, displacement) in projected.displacement.iter().enumerate().filter(|(n, d)| **d != start[*n]) {
-            let size = projected.sizes[&n];
-            let off =
-                group(&association, projected.classification(n)).closest(elevated.mesh.points[n] + *displacement, None);
+        for (n, displacement) in level.wall.displacements().iter().enumerate().filter(|(n, d)| **d != start[*n]) {
+            let size = level.wall.size(n).unwrap();
+            let group = association.group_of(level.wall.classification(n)).expect("a node that slides is on the CAD");
+            let off = group.closest(level.straight()[n] + *displacement, None);
             assert!(off.distance < 1e-7 * size, "{case} P{order}: node {n} is {:e} off the CAD", off.distance);
-            assert!(n >= elevated.linear_nodes, "{case} P{order}: linear node {n} has slid");
+            assert!(n >= level.elevated.linear_nodes, "{case} P{order}: linear node {n} has slid");
             slid = slid.max(displacement.distance(start[n]) / size);
         }
         Outcome { before, after, slid }
@@ -133,19 +122,21 @@ fn the_inside_of_straight_faces_follows_their_rims() {
     let straight: Vec<usize> =
         (0..boundary.faces.len()).filter(|&f| association.faces[f] == Classification::Surface(waist)).collect();
     straight.iter().for_each(|&f| association.faces[f] = Classification::Straight);
-    let mut elevated = elevate(&linear, order).unwrap();
-    let (periodic, _) = PeriodicConstraint::new(&mut elevated, &boundary, false);
-    let mut projected = project(&elevated, &boundary, &association, false);
-    let before = projected.displacement.clone();
-    fit(&elevated, &boundary, &association, &periodic, &mut projected);
+    let settings = Settings::new(order);
+    let case = Case { settings: &settings, boundary: &boundary, association: &association };
+    let (mut level, _) = Level::new(case, elevate(&linear, order).unwrap());
+    project(&mut level);
+    let before = level.wall.displacements();
+    fit(&mut level);
+    let displacement = level.wall.displacements();
     let mut beside = 0;
     for face in straight {
         let cell = boundary.faces[face].cell;
-        let (rim, inner) = boundary.nodes(face, &elevated.mesh).split_at(interior_start(cell, order));
-        beside += usize::from(rim.iter().any(|n| projected.displacement[n.index()] != before[n.index()]));
+        let (rim, inner) = boundary.nodes(face, level.mesh()).split_at(interior_start(cell, order));
+        beside += usize::from(rim.iter().any(|n| displacement[n.index()] != before[n.index()]));
         for (node, weights) in inner.iter().zip(interior_extension(cell, order).chunks_exact(rim.len())) {
-            let wanted: DVec3 = rim.iter().zip(weights).map(|(n, w)| projected.displacement[n.index()] * *w).sum();
-            let off = projected.displacement[node.index()].distance(wanted);
+            let wanted: DVec3 = rim.iter().zip(weights).map(|(n, w)| displacement[n.index()] * *w).sum();
+            let off = displacement[node.index()].distance(wanted);
             assert!(off < 1e-12, "face {face}: its inner node is {off:e} off");
         }
     }

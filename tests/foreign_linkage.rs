@@ -9,7 +9,7 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use common::{fixture, root, sagitta};
-use sagitta::associate::{Classification, classify};
+use sagitta::associate::{Classification, Linkage, classify};
 use sagitta::mesh::Boundary;
 
 fn m6(extension: &str) -> PathBuf {
@@ -41,7 +41,8 @@ fn nodes_where_the_edges_of_a_string_meet_are_held() {
     let reading = cad::ReadOptions { reader: env!("CARGO_BIN_EXE_sagitta").into(), ..cad::ReadOptions::default() };
     let model = cad::Model::read(&m6("egads"), &reading).unwrap();
     let [linkage, mesh] = [m6("meshlink.xml"), m6("msh")];
-    let association = classify(Some([&linkage, &mesh]), &linear, &boundary, &model, 1e-3, &|_| {}).unwrap().association;
+    let linkage = Linkage::read(&linkage, &mesh).unwrap();
+    let association = classify(Some(&linkage), &linear, &boundary, &model, 1e-3, &|_| {}).unwrap().association;
     let mut held = 0;
     for (node, place) in linear.points.iter().enumerate() {
         let around = (0..boundary.edges.len()).filter(|&e| boundary.edges[e].iter().any(|n| n.index() == node));

@@ -9,7 +9,7 @@ use std::path::Path;
 
 use common::impatient::Impatient;
 use common::{Outcome, fixture, json, number, root, sagitta};
-use sagitta::curve::{self, Job};
+use sagitta::curve::Job;
 use sagitta::element::Order;
 
 /// The weeble, with work enough for several rounds.
@@ -89,9 +89,9 @@ fn falls_back_as_without_interruption() {
     let curve_p4 = |resume: Option<&Path>| {
         let mut job = Job::new(mesh.clone(), cad.clone(), Some(linkage.clone()), Order::new(4).unwrap());
         job.reading.reader = env!("CARGO_BIN_EXE_sagitta").into();
-        job.smoothing.max_sweeps = SWEEPS;
-        job.resume = resume.map(Into::into);
-        curve::curve(&job, &mut Impatient::new(4, 1)).unwrap()
+        job.settings.smoothing.max_sweeps = SWEEPS;
+        job.settings.resume = resume.map(Into::into);
+        job.run(&mut Impatient::new(4, 1)).unwrap()
     };
     let (whole, second) = (curve_p4(None), curve_p4(Some(&state)));
     for (curved, orders) in [(&whole, 2), (&second, 1)] {

@@ -1,11 +1,9 @@
 //! Where the association of a mesh comes from: a linkage file, its entity tags, or its geometry.
 
-use std::path::Path;
-
 use cad::Model;
 
 use super::{
-    AssociateError, Association, Candidates, Inference, LinkageError, Tolerance, associate, infer, read_linkage,
+    AssociateError, Association, Candidates, Inference, Linkage, LinkageError, Tolerance, associate, infer, linked,
 };
 use crate::mesh::{Boundary, Mesh};
 
@@ -25,7 +23,7 @@ pub struct Classified {
     pub source: String,
 }
 
-/// Why a mesh could not be tied.
+/// Why a mesh could not be classified.
 #[derive(Debug, thiserror::Error)]
 pub enum ClassifyError {
     /// The linkage file cannot be used.
@@ -36,15 +34,16 @@ pub enum ClassifyError {
     Associate(#[from] AssociateError),
 }
 
-/// PeriodicConstraint a mesh to its CAD: by the linkage file where there is one, else by entity tags where they are this CAD's, else by geometry.
+/// Classifies the boundary of a mesh on its CAD: by the linkage where there is one, else by entity tags where they are this CAD's, else
+/// by geometry.
 ///
-/// `linkage` is the linkage file with the file of the mesh, which it may name. `choose` may strike out candidates before they are held against
+/// `choose` may strike out candidates before they are held against
 /// the CAD. `max_offset` is that of [`associate`].
 ///
 /// # Errors
 /// [`ClassifyError`]; where tags do not hold and geometry does not tell either, what is wrong with the tags.
 pub fn classify(
-    linkage: Option<[&Path; 2]>,
+    linkage: Option<&Linkage>,
     mesh: &Mesh,
     boundary: &Boundary,
     model: &Model,
@@ -58,15 +57,15 @@ pub fn classify(
         association.notes.append(&mut candidates.notes);
         Ok::<_, AssociateError>(Classified { candidates, association, inference, source })
     };
-    if let Some([path, mesh_file]) = linkage {
-        let candidates = read_linkage(path, mesh_file, mesh, boundary, model)?;
+    if let Some(linkage) = linkage {
+        let (candidates, file) = (linked(linkage, mesh, boundary, model)?, linkage.file.display());
         let trusted = candidates.trusted;
-        let mut tied = held(candidates, None, format!("linkage file {}", path.display()))?;
+        let mut classified = held(candidates, None, format!("linkage file {file}"))?;
         if !trusted {
             let note = "names another CAD file; its numbers were held against this one";
-            tied.association.notes.push(format!("{} {note}", path.display()));
+            classified.association.notes.push(format!("{file} {note}"));
         }
-        return Ok(tied);
+        return Ok(classified);
     }
     let by_tags = held(Candidates::by_tags(mesh, boundary, model), None, "the mesh's entity tags".into());
     let refused = match by_tags {
@@ -77,14 +76,14 @@ pub fn classify(
     if !is_usable(boundary, &inference) {
         return Err(refused.into());
     }
-    let mut tied = held(inference.candidates.clone(), None, "geometry".into())?;
+    let mut classified = held(inference.candidates.clone(), None, "geometry".into())?;
     let [faces, edges] = [inference.undecided(), inference.edges.len()];
-    tied.association.notes.push(format!(
+    classified.association.notes.push(format!(
         "the mesh's entity tags are not this CAD's numbers; what lies on what was found by geometry, {faces} faces and {edges} edges \
          undecided (--dry-run shows it)"
     ));
-    tied.inference = Some(inference);
-    Ok(tied)
+    classified.inference = Some(inference);
+    Ok(classified)
 }
 
 /// Whether something was decided, and of every patch nearly all or nothing.

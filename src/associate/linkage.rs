@@ -84,19 +84,35 @@ pub enum LinkageError {
     },
 }
 
-/// Reads a linkage file and looks up what it says of the mesh in the file `mesh_file`.
+/// A MeshLink document, with the names of the files by which it and its mesh are called.
+#[derive(Clone, Debug)]
+pub struct Linkage {
+    /// The document.
+    pub document: Document,
+    /// The file that it is in: messages name it.
+    pub file: PathBuf,
+    /// The file of the mesh: a document may link several, by name.
+    pub mesh_file: PathBuf,
+}
+
+impl Linkage {
+    /// Reads a linkage file for the mesh in the file `mesh_file`.
+    ///
+    /// # Errors
+    /// [`LinkageError::Read`], [`LinkageError::Refused`].
+    pub fn read(file: &Path, mesh_file: &Path) -> Result<Linkage, LinkageError> {
+        let document = linkage_schema::read_path(file)?.accept()?;
+        Ok(Linkage { document, file: file.to_owned(), mesh_file: mesh_file.to_owned() })
+    }
+}
+
+/// Looks up what a linkage says of a mesh and its CAD.
 ///
 /// # Errors
 /// [`LinkageError`].
-pub fn read_linkage(
-    path: &Path,
-    mesh_file: &Path,
-    mesh: &Mesh,
-    boundary: &Boundary,
-    model: &Model,
-) -> Result<Candidates, LinkageError> {
-    let document = linkage_schema::read_path(path)?.accept()?;
-    let resolution = linkage_schema::resolve(&document).accept(path)?;
+pub fn linked(linkage: &Linkage, mesh: &Mesh, boundary: &Boundary, model: &Model) -> Result<Candidates, LinkageError> {
+    let Linkage { document, file: path, mesh_file } = linkage;
+    let resolution = linkage_schema::resolve(document).accept(path)?;
     if resolution.models.is_empty() {
         return Err(LinkageError::Empty { file: path.to_owned() });
     }
@@ -107,11 +123,11 @@ pub fn read_linkage(
     }
     let models = if models.is_empty() { resolution.models.iter().collect() } else { models };
     let numbering = Numbering::new(mesh);
-    let geometry = own_geometry(&document, model.path());
+    let geometry = own_geometry(document, model.path());
     let reader = Reader { path, mesh, boundary, model, numbering: &numbering, geometry: &geometry, part: Part::Whole };
     let trusted = document.geometry_files.iter().any(|file| same_file(&file.filename, model.path()));
     let mut candidates = Candidates { trusted, ..Candidates::default() };
-    candidates.notes.extend(not_given(path, &document, &geometry));
+    candidates.notes.extend(not_given(path, document, &geometry));
     for links in models {
         reader.within(links)?.model(links, &mut candidates)?;
     }

@@ -39,7 +39,7 @@ pub use document::{TooLarge, Written, document};
 pub use error::AssociateError;
 pub use infer::{Doubt, Incidence, Inference, ON_CAD, Tolerance, infer};
 pub use joint::{Joints, SHARP, normal_at};
-pub use linkage::{LinkageError, models_of, own_geometry, read_linkage, same_file};
+pub use linkage::{Linkage, LinkageError, linked, models_of, own_geometry, same_file};
 pub use numbering::{Numbering, Part, UnknownZone};
 pub use path::paths;
 pub use periodic::{NotPeriodic, PeriodicSheet, periodic_records, periodic_sheets};
@@ -122,6 +122,16 @@ pub struct Association {
 }
 
 impl Association {
+    /// The CAD that holds a classification's nodes, if it holds them on a surface or curve.
+    #[must_use]
+    pub fn group_of(&self, classification: Classification) -> Option<&Group> {
+        match classification {
+            Classification::Surface(surface) => Some(&self.surfaces[surface].group),
+            Classification::Curve(curve) => Some(&self.curves[curve].group),
+            _ => None,
+        }
+    }
+
     /// The plane that holds a classification's nodes, if one does.
     #[must_use]
     pub fn plane_of(&self, classification: Classification) -> Option<Plane> {

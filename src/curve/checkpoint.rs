@@ -14,9 +14,9 @@ use std::io::{self, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
 use flate2::{Crc, CrcReader, CrcWriter};
-use glam::DVec3;
 use rustc_hash::FxHasher;
 
+use super::level::Level;
 use crate::formats;
 use crate::smooth::Checkpoint;
 
@@ -66,17 +66,17 @@ pub enum CheckpointError {
 }
 
 impl Work {
-    /// The work of smoothing a mesh with the targets `straight` whose boundary nodes are displaced so; `settings` tells all else that
-    /// matters.
-    #[must_use]
-    pub fn new(elements: usize, straight: &[DVec3], displacement: &[DVec3], settings: &str) -> Work {
+    /// The work of smoothing a level.
+    pub(super) fn of(level: &Level) -> Work {
+        let (straight, settings) = (level.straight(), level.case.settings.fingerprint());
         let mut hasher = FxHasher::default();
         hasher.write(env!("CARGO_PKG_VERSION").as_bytes());
         hasher.write(settings.as_bytes());
-        for x in straight.iter().chain(displacement).flat_map(|x| x.to_array()) {
+        let boundary = (0..level.wall.len()).map(|n| level.wall.displacement(n));
+        for x in straight.iter().copied().chain(boundary).flat_map(|x| x.to_array()) {
             hasher.write_u64(x.to_bits());
         }
-        Work { fingerprint: hasher.finish(), elements, nodes: straight.len() }
+        Work { fingerprint: hasher.finish(), elements: level.mesh().element_count(3), nodes: straight.len() }
     }
 }
 

@@ -5,23 +5,17 @@ use std::num::NonZeroUsize;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::associate::{Association, Classification};
-use crate::curve::periodic::PeriodicConstraint;
-use crate::curve::wall::Projected;
-use crate::mesh::elevate::Elevated;
-use crate::mesh::{Boundary, Mesh, NodeId};
+use super::level::{Case, Level};
+use crate::associate::Classification;
+use crate::mesh::{Mesh, NodeId};
 
 /// Keeps all elements straight that lie beyond so many layers of elements off the curved walls. The first layer are the
 /// elements that touch a curved wall, each next one those that touch a node of the layers before it. The nodes of the
-/// elements beyond get the classification [`Classification::Straight`], and the displacement ends before them ([`Projected::beyond`]).
-pub fn leave_straight_beyond(
-    layers: NonZeroUsize,
-    elevated: &Elevated,
-    boundary: &Boundary,
-    association: &Association,
-    periodic: &PeriodicConstraint,
-    projected: &mut Projected,
-) {
+/// elements beyond get the classification [`Classification::Straight`], and the displacement ends before them
+/// ([`WallNode::beyond_layers`](super::level::WallNode::beyond_layers)).
+pub fn leave_straight_beyond(layers: NonZeroUsize, level: &mut Level) {
+    let Case { boundary, association, .. } = level.case;
+    let Level { elevated, periodic, wall, .. } = level;
     let mesh = &elevated.mesh;
     let mut near = vec![false; mesh.points.len()];
     for (classification, corners) in association.faces.iter().zip(&boundary.corners) {
@@ -43,14 +37,7 @@ pub fn leave_straight_beyond(
     let beyond = elements.iter().zip(&within).filter(|(_, within)| !**within);
     beyond.flat_map(|(nodes, _)| *nodes).for_each(|n| held[n.index()] = true);
     periodic.spread(&mut held);
-    projected.classifications.resize(held.len(), Classification::Free);
-    projected.displacement.resize(held.len(), DVec3::ZERO);
-    for n in (0..held.len()).filter(|&n| held[n]) {
-        projected.classifications[n] = Classification::Straight;
-        projected.displacement[n] = DVec3::ZERO;
-    }
-    held.truncate(elevated.linear_nodes);
-    projected.beyond = held;
+    wall.keep_straight(&held, elevated.linear_nodes);
 }
 
 /// Whether each volume element is straight: all its nodes are where its corners alone would put them.

@@ -4,10 +4,11 @@ use cad::Group;
 use glam::DVec3;
 use rustc_hash::FxHashSet;
 
-use crate::associate::{Association, Classification, normal_at};
+use super::level::{Case, Level};
+use crate::associate::{Classification, normal_at};
 use crate::certify::{self, Certificate, WallFace, Walls};
 use crate::element::{Cell, Order, Samples, basis};
-use crate::mesh::{Boundary, Mesh, NodeId};
+use crate::mesh::NodeId;
 
 /// Divisions an edge, times the order, at which a face that leans far is compared with the CAD's normals.
 const SURVEY: usize = 4;
@@ -24,11 +25,12 @@ pub struct Proof {
 }
 
 impl Proof {
-    /// Judges a mesh; `linear` are the places of its linear nodes before they were moved.
+    /// Judges a level's curved mesh.
     #[must_use]
-    pub fn of(mesh: &Mesh, linear: &[DVec3], boundary: &Boundary, association: &Association) -> Proof {
-        let certificate = certify::mesh(mesh, &mesh.points, Some(linear), &certify::Settings::default());
-        Proof { certificate, walls: walls(mesh, linear, boundary, association, |_| true) }
+    pub fn of(level: &Level) -> Proof {
+        let settings = certify::Settings::default();
+        let certificate = certify::mesh(level.mesh(), &level.curved, Some(level.linear()), &settings);
+        Proof { certificate, walls: walls(level, |_| true) }
     }
 
     /// Whether every element is proven valid and every face on the CAD free of folds.
@@ -39,50 +41,48 @@ impl Proof {
 
     /// Numbers of the elements that are not proven valid or have a face that is not proven free of folds, rising.
     #[must_use]
-    pub fn failing(&self, mesh: &Mesh, boundary: &Boundary) -> Vec<usize> {
+    pub fn failing(&self, level: &Level) -> Vec<usize> {
         let mut failing: Vec<usize> = self.certificate.failures.iter().map(|judged| judged.element).collect();
-        failing.extend(behind(mesh, boundary, &self.walls));
+        failing.extend(behind(level, &self.walls));
         failing.sort_unstable();
         failing.dedup();
         failing
     }
 }
 
-/// Judges those of the faces on the CAD that are `asked` for, by their index in [`Boundary::faces`].
-pub(crate) fn walls(
-    mesh: &Mesh,
-    linear: &[DVec3],
-    boundary: &Boundary,
-    association: &Association,
-    asked: impl Fn(usize) -> bool,
-) -> Walls {
-    let tied = |f: usize| matches!(association.faces[f], Classification::Surface(_));
-    let numbers: Vec<usize> = (0..boundary.faces.len()).filter(|&f| tied(f) && asked(f)).collect();
+/// Judges those of the faces on the CAD that are `asked` for, by their index in [`Boundary::faces`](crate::mesh::Boundary::faces).
+pub(crate) fn walls(level: &Level, asked: impl Fn(usize) -> bool) -> Walls {
+    let (Case { boundary, association, .. }, linear) = (level.case, level.linear());
+    let on_surface = |f: usize| matches!(association.faces[f], Classification::Surface(_));
+    let numbers: Vec<usize> = (0..boundary.faces.len()).filter(|&f| on_surface(f) && asked(f)).collect();
     let face = |f: usize| {
-        let own = &boundary.faces[f];
-        let points = mesh.points_of(boundary.nodes(f, mesh)).collect();
         let corners = boundary.corners[f].iter().map(|n| linear[n.index()]).collect();
-        WallFace { cell: own.cell, order: mesh.order, points, corners }
+        WallFace { cell: boundary.faces[f].cell, order: level.mesh().order, points: positions(level, f), corners }
     };
     let other = |f: usize| {
         let Classification::Surface(surface) = association.faces[f] else { return None };
-        axis(mesh, boundary, f, &association.surfaces.get(surface)?.group)
+        axis(level, f, &association.surfaces.get(surface)?.group)
     };
     certify::walls(&numbers, face, other, &certify::Settings::default())
 }
 
+/// Curved coordinates of a boundary face's nodes.
+fn positions(level: &Level, face: usize) -> Vec<DVec3> {
+    level.case.boundary.nodes(face, level.mesh()).iter().map(|n| level.curved[n.index()]).collect()
+}
+
 /// The middle of a face's normals, where they are all on the side of the CAD's normals beside them; as surveyed, not proven.
-fn axis(mesh: &Mesh, boundary: &Boundary, face: usize, group: &Group) -> Option<DVec3> {
-    let (cell, order) = (boundary.faces[face].cell, mesh.order);
-    let nodes: Vec<DVec3> = mesh.points_of(boundary.nodes(face, mesh)).collect();
+fn axis(level: &Level, face: usize, group: &Group) -> Option<DVec3> {
+    let (cell, order) = (level.case.boundary.faces[face].cell, level.mesh().order);
+    let nodes = positions(level, face);
     let samples = Samples::survey(cell, Order::LINEAR, SURVEY * order.get());
     let (mut own, mut agreement) = (Vec::new(), Vec::new());
     for &at in &samples.points()[..samples.count()] {
         let (values, slopes) = (basis::values(cell, order, at), basis::gradients(cell, order, at));
-        let place: DVec3 = nodes.iter().zip(values).map(|(x, v)| *x * v).sum();
+        let position: DVec3 = nodes.iter().zip(values).map(|(x, v)| *x * v).sum();
         let along = |axis: usize| -> DVec3 { nodes.iter().zip(&slopes).map(|(x, s)| *x * s[axis]).sum() };
         let normal = along(0).cross(along(1)).try_normalize()?;
-        agreement.extend(normal_at(group, place).map(|cad| cad.dot(normal)));
+        agreement.extend(normal_at(group, position).map(|cad| cad.dot(normal)));
         own.push(normal);
     }
     let alike = |sign: f64| !agreement.is_empty() && agreement.iter().all(|cosine| cosine * sign > 0.0);
@@ -100,10 +100,11 @@ fn middle(vectors: &[DVec3]) -> Option<DVec3> {
 }
 
 /// Numbers of the elements behind faces that are not proven free of folds, rising.
-pub(crate) fn behind(mesh: &Mesh, boundary: &Boundary, walls: &Walls) -> Vec<usize> {
+pub(crate) fn behind(level: &Level, walls: &Walls) -> Vec<usize> {
     if walls.hold() {
         return Vec::new();
     }
+    let (boundary, mesh) = (level.case.boundary, level.mesh());
     let faces: FxHashSet<usize> = walls.failures.iter().map(|own| own.face).collect();
     let elements = mesh.blocks_of(3).flat_map(|(_, block)| block.elements(mesh.order).map(|nodes| (block.cell, nodes)));
     let corners = faces.iter().flat_map(|&face| boundary.corners[face].iter().copied());

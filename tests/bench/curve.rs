@@ -5,19 +5,8 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use sagitta::curve::{self, Job, Observer, Step};
+use sagitta::curve::{Job, JobError, Step};
 use sagitta::element::Order;
-use sagitta::smooth;
-
-struct Silent;
-
-impl Observer for Silent {
-    fn step(&mut self, _: Step) {}
-
-    fn progress(&mut self, _: &smooth::Progress) -> bool {
-        true
-    }
-}
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().collect();
@@ -37,10 +26,10 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-fn row(order: Order) -> Result<(), curve::PipelineError> {
+fn row(order: Order) -> Result<(), JobError> {
     let case = |ending: &str| PathBuf::from(format!("{}/fixtures/weeble/weeble.{ending}", env!("CARGO_MANIFEST_DIR")));
     let job = Job::new(case("msh"), case("step"), Some(case("meshlink.xml")), order);
-    let curved = curve::curve(&job, &mut Silent)?;
+    let curved = job.run(&mut ())?;
     let total: f64 = curved.seconds.iter().map(|(_, s)| s).sum();
     let of = |step: Step| curved.seconds.iter().filter(|(s, _)| *s == step).map(|(_, t)| t).sum::<f64>();
     let (nodes, sweeps) = (curved.mesh.points.len(), curved.smoothed.sweeps);

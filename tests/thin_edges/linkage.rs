@@ -4,7 +4,9 @@ use std::path::Path;
 
 use cad::{FaceId, Group};
 use glam::DVec3;
-use sagitta::associate::{self};
+use sagitta::associate::{self, Linkage};
+use sagitta::curve::Settings;
+use sagitta::curve::level::{Case as LevelCase, Level};
 use sagitta::element::{Cell, Order};
 use sagitta::mesh::elevate::elevate;
 use sagitta::mesh::{Block, Boundary, EntityKey, Mesh, NodeId};
@@ -96,7 +98,7 @@ fn linkage(mesh: &Mesh) -> String {
     )
 }
 
-/// PeriodicConstraint the layers of a section to their sides and projects them at every order: wall nodes, and those that are not on their side.
+/// Classifies the layers of a section on their sides and projects them at every order: wall nodes, and those that are not on their side.
 fn project(section: &Section, folder: &Path) -> (usize, usize) {
     let [cad, link] = ["section.igs", "link.xml"].map(|name| folder.join(name));
     std::fs::write(&cad, iges::file(&section.patches())).unwrap();
@@ -108,19 +110,23 @@ fn project(section: &Section, folder: &Path) -> (usize, usize) {
     let linear = layer.mesh();
     std::fs::write(&link, linkage(&linear)).unwrap();
     let boundary = Boundary::new(&linear);
-    let candidates = associate::read_linkage(&link, "layers.msh".as_ref(), &linear, &boundary, &model).unwrap();
+    let linkage = Linkage::read(&link, "layers.msh".as_ref()).unwrap();
+    let candidates = associate::linked(&linkage, &linear, &boundary, &model).unwrap();
     let association = associate::associate(&linear, &boundary, &model, &candidates, 1e-3).unwrap();
     let (mut nodes, mut astray) = (0, 0);
     for (p, (tag, face)) in ORDERS.into_iter().flat_map(|p| [(p, (1, 0)), (p, (2, 1))]) {
-        let elevated = elevate(&linear, Order::new(p).unwrap()).unwrap();
-        let projected = sagitta::curve::wall::project(&elevated, &boundary, &association, false);
+        let order = Order::new(p).unwrap();
+        let settings = Settings::new(order);
+        let case = LevelCase { settings: &settings, boundary: &boundary, association: &association };
+        let (mut level, _) = Level::new(case, elevate(&linear, order).unwrap());
+        sagitta::curve::wall::project(&mut level);
         let own = Group::of_faces(&model, &[FaceId::new(face)]).unwrap();
-        let wall = elevated.mesh.blocks.iter().find(|b| b.entity == EntityKey::new(2, tag)).unwrap();
+        let wall = level.mesh().blocks.iter().find(|b| b.entity == EntityKey::new(2, tag)).unwrap();
         let mut numbers: Vec<usize> = wall.nodes.iter().map(|node| node.index()).collect();
         numbers.sort_unstable();
         numbers.dedup();
         nodes += numbers.len();
-        let place = |n: usize| elevated.mesh.points[n] + projected.displacement[n];
+        let place = |n: usize| level.displaced(NodeId::new(n).unwrap());
         let off = |n: &&usize| own.closest(place(**n), None).distance > 1e-9 * model.diagonal();
         astray += numbers.iter().filter(off).count();
     }

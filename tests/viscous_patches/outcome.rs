@@ -6,9 +6,9 @@ use std::time::Instant;
 
 use cad::ReadOptions;
 use glam::DVec3;
-use sagitta::curve::{Curved, Job, Observer, Step, curve};
+use sagitta::curve::{Curved, Job};
 use sagitta::element::Order;
-use sagitta::smooth::{Progress, Summary};
+use sagitta::smooth::Summary;
 
 use crate::case::Case;
 use crate::patch::Patch;
@@ -23,7 +23,7 @@ pub struct Outcome {
     /// Elements found invalid by sampling.
     pub inverted: usize,
     /// Middles of wall faces that are off the CAD, and the share of the displacement that they have left.
-    pub given_up: Vec<(DVec3, f64)>,
+    pub off_cad: Vec<(DVec3, f64)>,
     /// Before and after smoothing.
     pub quality: [Summary; 2],
     pub sweeps: usize,
@@ -31,7 +31,7 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Draws a patch, curves it and holds it against the candidates; its files go to `folder`.
+    /// Draws a patch, curves it and holds it against what is claimed; its files go to `folder`.
     pub fn of(case: Case, folder: &Path) -> Outcome {
         let patch = Patch::draw(&case);
         let [cad, mesh] = files(&case, folder);
@@ -39,13 +39,13 @@ impl Outcome {
         let reading = ReadOptions { reader: env!("CARGO_BIN_EXE_sagitta").into(), ..ReadOptions::default() };
         let job = Job { reading, ..Job::new(mesh, cad, None, Order::new(case.order).unwrap()) };
         let start = Instant::now();
-        let curved = curve(&job, &mut Silent).unwrap_or_else(|error| panic!("{case}: {error}"));
+        let curved = job.run(&mut ()).unwrap_or_else(|error| panic!("{case}: {error}"));
         Outcome {
             case,
             patch,
             unproven: curved.certificate.failures.len(),
             inverted: sampling::inverted(&curved.mesh).len(),
-            given_up: given_up(&curved),
+            off_cad: off_cad(&curved),
             quality: [curved.smoothed.start, curved.smoothed.end],
             sweeps: curved.smoothed.sweeps,
             seconds: start.elapsed().as_secs_f64(),
@@ -54,7 +54,7 @@ impl Outcome {
 
     /// Whether the patch is valid, by proof and by sampling, and on its CAD.
     pub fn is_good(&self) -> bool {
-        self.unproven == 0 && self.inverted == 0 && self.given_up.is_empty()
+        self.unproven == 0 && self.inverted == 0 && self.off_cad.is_empty()
     }
 }
 
@@ -63,22 +63,12 @@ pub fn files(case: &Case, folder: &Path) -> [PathBuf; 2] {
     ["igs", "msh"].map(|extension| folder.join(format!("{}.{extension}", case.seed)))
 }
 
-fn given_up(curved: &Curved) -> Vec<(DVec3, f64)> {
+fn off_cad(curved: &Curved) -> Vec<(DVec3, f64)> {
     let middle = |face: usize| {
         let corners = &curved.boundary.corners[face];
         corners.iter().map(|n| curved.straight[n.index()]).sum::<DVec3>() / corners.len() as f64
     };
-    curved.given_up.iter().map(|given| (middle(given.face), given.share)).collect()
-}
-
-struct Silent;
-
-impl Observer for Silent {
-    fn step(&mut self, _: Step) {}
-
-    fn progress(&mut self, _: &Progress) -> bool {
-        true
-    }
+    curved.off_cad.iter().map(|off| (middle(off.face), off.fraction)).collect()
 }
 
 impl fmt::Display for Outcome {
@@ -97,10 +87,10 @@ impl fmt::Display for Outcome {
         if self.unproven + self.inverted > 0 {
             write!(f, "; {} elements not proven valid, {} found invalid", self.unproven, self.inverted)?;
         }
-        if let Some((place, share)) = self.given_up.first() {
-            let count = self.given_up.len();
-            write!(f, "; {count} wall faces taken off the CAD, the elements on them would be invalid: at {place:.2}")?;
-            write!(f, " {share:.2} of the displacement is left")?;
+        if let Some((place, fraction)) = self.off_cad.first() {
+            let count = self.off_cad.len();
+            write!(f, "; {count} wall faces off the CAD, the elements on them would be invalid: at {place:.2}")?;
+            write!(f, " {fraction:.2} of the displacement is left")?;
         }
         Ok(())
     }

@@ -212,6 +212,7 @@ pub struct Model {
     pub(crate) path: PathBuf,
     pub(crate) format: SourceFormat,
     pub(crate) unit: Unit,
+    pub(crate) scale: f64,
     pub(crate) faces: Vec<Face>,
     pub(crate) edges: Vec<Edge>,
     pub(crate) vertices: Vec<Vertex>,
@@ -247,6 +248,11 @@ impl Model {
     /// Unit of length of the file; all numbers are in it, times [`ReadOptions::scale`](crate::ReadOptions::scale).
     pub fn unit(&self) -> &Unit {
         &self.unit
+    }
+
+    /// What all lengths of the file were multiplied by: [`ReadOptions::scale`](crate::ReadOptions::scale).
+    pub fn scale(&self) -> f64 {
+        self.scale
     }
 
     /// All faces, by number.

@@ -133,7 +133,7 @@ fn open_edge(shape: &sys::Shape, i: usize) -> Result<(Edge, Option<EdgeGeometry>
 ///
 /// # Errors
 /// What OCCT said and about which entity.
-pub(crate) fn model(path: &Path, shape: &sys::Shape, description: Description) -> Result<Model, String> {
+pub(crate) fn model(path: &Path, shape: &sys::Shape, description: Description, scale: f64) -> Result<Model, String> {
     let vertices: Vec<Vertex> = (0..shape.vertex_count())
         .map(|i| {
             let data = at("vertex", i, shape.vertex(i))?;
@@ -163,6 +163,7 @@ pub(crate) fn model(path: &Path, shape: &sys::Shape, description: Description) -
         path: path.to_path_buf(),
         format: description.format,
         unit: description.unit(),
+        scale,
         faces,
         edges,
         vertices,

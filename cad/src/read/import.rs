@@ -144,7 +144,7 @@ impl Model {
         match payload::read(&bytes) {
             Some((Answer::Model(description), shape)) => {
                 let shape = sys::shape_from_bytes(shape).map_err(|error| refused(error.to_string()))?;
-                assemble::model(path, &shape, description).map_err(refused)
+                assemble::model(path, &shape, description, options.scale).map_err(refused)
             }
             Some((Answer::Failure(cause), _)) if is_memory(&cause) => {
                 Err(ReadError::OutOfMemory { path: owned(), limit: options.memory_limit })

@@ -70,7 +70,7 @@ fn read(path: &Path) -> Result<(Description, Vec<u8>), String> {
     };
     let shape = import.shape().bytes().map_err(|error| error.to_string())?;
     let restored = sys::shape_from_bytes(&shape).map_err(|error| error.to_string())?;
-    rehearse(&assemble::model(path, &restored, description())?)?;
+    rehearse(&assemble::model(path, &restored, description(), scale())?)?;
     Ok((description(), shape))
 }
 

@@ -15,7 +15,7 @@ use crate::associate::Choice;
 use crate::cli::exit::{DONE, GIVEN_UP, NOT_CERTIFIED, STOPPED};
 use crate::cli::form::Form;
 use crate::cli::output::{Failure, print, write_json};
-use crate::curve::{self, Curved, Job};
+use crate::curve::{Curved, Job, Settings};
 use crate::element::Order;
 use crate::formats;
 use crate::report::{fields, report};
@@ -153,6 +153,14 @@ impl Options {
             mesh: self.mesh.clone(),
             cad: self.cad.clone(),
             linkage: self.linkage.clone(),
+            cad_scale: self.reading.scale(),
+            reading: self.reading.options(),
+            settings: self.settings(),
+        }
+    }
+
+    fn settings(&self) -> Settings {
+        Settings {
             patches: self.patches(),
             order: self.order,
             max_offset: self.max_offset,
@@ -160,8 +168,6 @@ impl Options {
             freeze_walls: self.freeze_walls,
             direct: self.direct,
             curve_layers: self.curve_layers.0,
-            cad_scale: self.reading.scale(),
-            reading: self.reading.options(),
             smoothing: smooth::Settings {
                 threshold: self.threshold,
                 alpha: self.alpha,
@@ -193,7 +199,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let mut teller = Teller::new(options.quiet).stoppable(limit)?;
     let mut trace = Trace::new(&mut teller);
     let mut keeper = Keeper::new(&mut trace, options.checkpoint.clone(), options.checkpoint_every);
-    let curved = curve::curve(&job, &mut keeper);
+    let curved = job.run(&mut keeper);
     if let Some(failure) = keeper.failure {
         eprintln!("sagitta: the last checkpoint was not written: {failure}");
     }
@@ -203,7 +209,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     teller.finish();
     let curved = curved?;
     let report = report(&job, &curved);
-    let certified = report.certified && curved.walls.hold();
+    let certified = curved.is_certified();
     if certified || options.keep_invalid {
         write(options, output, &curved)?;
     }
@@ -225,7 +231,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
 
 /// Tells what lies on what.
 fn dry_run(job: &Job, report: Option<&Path>) -> Result<u8, Failure> {
-    let summary = curve::association(job)?;
+    let summary = job.association()?;
     if let Some(path) = report {
         write_json(path, &summary)?;
     }
@@ -240,11 +246,11 @@ fn write(options: &Options, output: &Path, curved: &Curved) -> Result<(), Failur
 }
 
 fn exit_code(curved: &Curved) -> u8 {
-    if !curved.certificate.holds() || !curved.walls.hold() {
+    if !curved.is_certified() {
         NOT_CERTIFIED
     } else if curved.smoothed.stopped {
         STOPPED
-    } else if !curved.given_up.is_empty() {
+    } else if !curved.off_cad.is_empty() {
         GIVEN_UP
     } else {
         DONE

@@ -59,7 +59,7 @@ struct Foot {
 
 impl<'a> Field<'a> {
     /// The field of `wall`, whose nodes have these displacements: `seeds` tells which linear nodes are wall vertices, `roots`
-    /// which of them each linear node hangs on.
+    /// which of them each linear node hangs on, `beyond` which are beyond the layers that may be curved.
     pub(super) fn new(
         elevated: &'a Elevated,
         wall: &'a [WallFace],
@@ -67,7 +67,7 @@ impl<'a> Field<'a> {
         seeds: &[bool],
         roots: Vec<Option<u32>>,
         inherited: &[f64],
-        beyond: &[bool],
+        beyond: impl Fn(usize) -> bool,
     ) -> Field<'a> {
         let (mesh, linear_nodes) = (&elevated.mesh, elevated.linear_nodes);
         let (starts, around) = faces_around(wall, linear_nodes);
@@ -240,12 +240,10 @@ fn reaches(wall: &[WallFace], displacement: &[DVec3], points: &[DVec3], linear_n
 }
 
 /// At each root the distance of the nearest of its nodes beyond the layers that may be curved; nothing where all may be.
-fn ends(points: &[DVec3], roots: &[Option<u32>], beyond: &[bool]) -> Vec<f64> {
-    if beyond.is_empty() {
-        return Vec::new();
-    }
-    let mut ends = vec![f64::MAX; roots.len()];
-    for (n, root) in roots.iter().enumerate().filter(|(n, _)| beyond[*n]) {
+fn ends(points: &[DVec3], roots: &[Option<u32>], beyond: impl Fn(usize) -> bool) -> Vec<f64> {
+    let mut ends = Vec::new();
+    for (n, root) in roots.iter().enumerate().filter(|(n, _)| beyond(*n)) {
+        ends.resize(roots.len(), f64::MAX);
         if let Some(root) = root.map(|root| root as usize) {
             ends[root] = ends[root].min(points[n].distance(points[root]));
         }

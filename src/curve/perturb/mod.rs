@@ -45,36 +45,30 @@ mod roots;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::associate::{Association, Classification};
-use crate::curve::periodic::PeriodicConstraint;
-use crate::curve::wall::Projected;
+use super::level::{Case, Level};
+use crate::associate::Classification;
 use crate::mesh::Boundary;
 use crate::mesh::elevate::Elevated;
 use field::Field;
 pub use field::WallFace;
 use roots::Graph;
 
-/// Places of all nodes: boundary nodes where projection put them, planes and volume carried along.
+/// Positions of all nodes: boundary nodes displaced as given ([`Wall::displacements`](super::level::Wall::displacements)), planes and
+/// volume carried along.
 #[must_use]
-pub fn perturb(
-    elevated: &Elevated,
-    boundary: &Boundary,
-    association: &Association,
-    projected: &Projected,
-    periodic: &PeriodicConstraint,
-) -> Vec<DVec3> {
+pub fn perturb(level: &Level, mut displacement: Vec<DVec3>) -> Vec<DVec3> {
+    let Level { case: Case { boundary, association, .. }, elevated, wall: state, .. } = level;
     let planar = |classification: Classification| association.plane_of(classification).is_some();
     let curved = |classification: Classification| {
         matches!(classification, Classification::Surface(_)) && !planar(classification)
     };
     let linear = elevated.linear_nodes;
-    let classification = |n: usize| projected.classification(n);
+    let classification = |n: usize| state.classification(n);
     let mut wall = wall_faces(elevated, boundary, |f| curved(association.faces[f]));
-    let mut displacement = projected.displacement.clone();
     let nodes = elevated.mesh.points.len();
     if wall.is_empty() {
         displacement.resize(nodes, DVec3::ZERO);
-        return sum(elevated, association, projected, displacement);
+        return sum(level, displacement);
     }
 
     let on = |faces: &[WallFace]| {
@@ -91,36 +85,32 @@ pub fn perturb(
     drop(graph);
 
     let in_plane = |n: usize| n >= linear && planar(classification(n));
-    let field = Field::new(elevated, &wall, &displacement, &seeds, roots, &[], &projected.beyond);
+    let beyond = |n: usize| state.is_beyond_layers(n);
+    let field = Field::new(elevated, &wall, &displacement, &seeds, roots, &[], beyond);
     let reach = field.reach_of_roots();
     let mut carried = carry(&field, elevated, displacement.clone(), in_plane);
     carried.par_iter_mut().enumerate().skip(linear).for_each(|(n, d)| {
-        if let Some(plane) = association.plane_of(classification(n)) {
+        if let Some(plane) = level.plane_of(n) {
             *d = plane.closest(elevated.mesh.points[n] + *d) - elevated.mesh.points[n];
         }
     });
     displacement = carried;
-    periodic.carry(&elevated.mesh.points, &mut displacement);
+    level.periodic.carry(&elevated.mesh.points, &mut displacement);
 
     wall.extend(planes);
-    let field = Field::new(elevated, &wall, &displacement, &all_seeds, all_roots, &reach, &projected.beyond);
+    let field = Field::new(elevated, &wall, &displacement, &all_seeds, all_roots, &reach, beyond);
     let mut whole = displacement.clone();
     whole.resize(nodes, DVec3::ZERO);
     let whole = carry(&field, elevated, whole, |n| classification(n) == Classification::Free);
-    sum(elevated, association, projected, whole)
+    sum(level, whole)
 }
 
-/// Straight places plus displacements, planes kept exactly.
-fn sum(
-    elevated: &Elevated,
-    association: &Association,
-    projected: &Projected,
-    mut displacement: Vec<DVec3>,
-) -> Vec<DVec3> {
-    displacement.par_iter_mut().zip(&elevated.mesh.points).enumerate().for_each(|(n, (place, straight))| {
-        *place += *straight;
-        if n >= elevated.linear_nodes {
-            *place = association.plane_of(projected.classification(n)).map_or(*place, |plane| plane.closest(*place));
+/// Straight positions plus displacements, planes kept exactly.
+fn sum(level: &Level, mut displacement: Vec<DVec3>) -> Vec<DVec3> {
+    displacement.par_iter_mut().zip(level.straight()).enumerate().for_each(|(n, (position, straight))| {
+        *position += *straight;
+        if n >= level.elevated.linear_nodes {
+            *position = level.plane_of(n).map_or(*position, |plane| plane.closest(*position));
         }
     });
     displacement

@@ -7,10 +7,11 @@
 //! A step that is not proven valid is undone, and the next one is half as long. Where the shortest is undone too, the walls around the
 //! elements that failed stay, and the others go on.
 
-use super::{Ladder, SWEEPS, Standing};
-use crate::smooth::{self, Progress};
+use super::recovery::{Recovery, SWEEPS};
+use crate::curve::level::Wall;
+use crate::smooth;
 
-/// The first step, as a share of the whole way.
+/// The first step, as a fraction of the whole way.
 const STEP: f64 = 0.25;
 /// No step is shorter.
 const SHORTEST: f64 = 1.0 / 32.0;
@@ -21,30 +22,33 @@ const MOST: usize = 48;
 /// Costs good enough to take the next step.
 const ENOUGH: f64 = 0.3;
 
-impl Ladder<'_, '_> {
+impl Recovery<'_, '_> {
     /// Takes the walls forward as far as the mesh stays proven.
-    pub(super) fn advance(&mut self, now: &mut Standing, watch: &mut impl FnMut(Progress) -> bool) {
-        if !now.proof.holds() || now.way.is_done() {
+    pub(super) fn forward(&mut self) {
+        if !self.proof.holds() || self.level.wall.is_on_cad() {
             return;
         }
-        let sweeps = SWEEPS.min(self.settings.max_sweeps);
-        let enough = self.settings.threshold.min(ENOUGH);
-        let enough = smooth::Settings { max_sweeps: sweeps, threshold: enough, ..self.settings.clone() };
-        let mut pull = vec![1.0; now.places.len()];
+        let settings = &self.level.case.settings.smoothing;
+        let enough = smooth::Settings {
+            max_sweeps: SWEEPS.min(settings.max_sweeps),
+            threshold: settings.threshold.min(ENOUGH),
+            ..settings.clone()
+        };
+        let mut pull = vec![1.0; self.level.curved.len()];
         let (mut step, mut row, mut moved) = (STEP, STEADY - 1, false);
         for _ in 0..MOST {
-            if now.smoothed.stopped {
+            if self.smoothed.stopped {
                 return;
             }
-            if now.way.least(&pull).is_none() && std::mem::take(&mut moved) {
+            if farthest_back(&self.level.wall, &pull).is_none() && std::mem::take(&mut moved) {
                 pull.fill(1.0); // with the others where they are now, those that stayed may come after
                 step = STEP;
             }
-            let Some(least) = now.way.least(&pull) else { break };
-            let share = (step / (1.0 - least)).min(1.0);
-            let tried = self.attempt(now, |ladder, tried| {
-                ladder.go_forward(share, &pull, tried);
-                ladder.smooth_again(&enough, tried, watch);
+            let Some(least) = farthest_back(&self.level.wall, &pull) else { break };
+            let fraction = (step / (1.0 - least)).min(1.0);
+            let tried = self.attempt(|recovery| {
+                recovery.go_forward(fraction, &pull);
+                recovery.smooth_again(&enough);
             });
             moved |= tried.is_ok();
             match tried {
@@ -61,44 +65,47 @@ impl Ladder<'_, '_> {
                 }
             }
         }
-        let settings = self.settings.clone();
-        let _ = self.attempt(now, |ladder, tried| ladder.smooth_again(&settings, tried, watch));
+        let settings = self.level.case.settings;
+        let _ = self.attempt(|recovery| recovery.smooth_again(&settings.smoothing));
     }
 
     /// Does what is asked, or, where the mesh is not proven valid after it, nothing; then the elements that fail are returned.
-    fn attempt(
-        &mut self,
-        now: &mut Standing,
-        attempt: impl FnOnce(&mut Ladder, &mut Standing),
-    ) -> Result<(), Vec<usize>> {
-        let displacement = self.projected.displacement.clone();
-        let mut tried = now.clone();
-        attempt(self, &mut tried);
-        if tried.proof.holds() {
-            *now = tried;
+    fn attempt(&mut self, attempt: impl FnOnce(&mut Self)) -> Result<(), Vec<usize>> {
+        let (curved, wall) = (self.level.curved.clone(), self.level.wall.clone());
+        let (smoothed, proof) = (self.smoothed.clone(), self.proof.clone());
+        attempt(self);
+        if self.proof.holds() {
             return Ok(());
         }
-        self.projected.displacement = displacement;
-        now.smoothed.sweeps = tried.smoothed.sweeps;
-        now.smoothed.stopped = tried.smoothed.stopped;
-        Err(tried.proof.failing(&self.elevated.mesh, self.boundary))
+        let failing = self.proof.failing(self.level);
+        self.level.curved = curved;
+        self.level.wall = wall;
+        self.proof = proof;
+        let tried = std::mem::replace(self.smoothed, smoothed);
+        self.smoothed.sweeps = tried.sweeps;
+        self.smoothed.stopped = tried.stopped;
+        Err(failing)
     }
 
-    /// Takes wall nodes this share of what is left of their way, times their pull, and carries the others along.
-    fn go_forward(&mut self, share: f64, pull: &[f64], now: &mut Standing) {
+    /// Takes wall nodes this fraction of what is left of their way, times their pull, and carries the others along.
+    fn go_forward(&mut self, fraction: f64, pull: &[f64]) {
         let carried = self.carried();
-        let nodes: Vec<usize> = (0..pull.len()).filter(|&n| now.way.shares[n] < 1.0 && pull[n] > 0.0).collect();
-        for &n in &nodes {
-            let own = &mut now.way.shares[n];
-            *own += share * pull[n] * (1.0 - *own);
-        }
-        self.follow(&nodes, Some(carried), now);
+        let wall = &mut self.level.wall;
+        let nodes: Vec<usize> = wall.off_cad().map(|(n, _)| n).filter(|&n| pull[n] > 0.0).collect();
+        nodes.iter().for_each(|&n| wall.advance(n, fraction * pull[n]));
+        self.follow(&nodes, Some(carried));
     }
 
     /// The walls around some elements go no farther.
     fn stay(&self, elements: &[usize], pull: &mut [f64]) {
-        let mut own = self.shares_around(elements, 1, 0.0);
-        self.periodic.least(&mut own);
+        let mut own = self.fractions_around(elements, 1, 0.0);
+        self.level.periodic.least(&mut own);
         pull.iter_mut().zip(own).for_each(|(pull, own)| *pull = pull.min(own));
     }
+}
+
+/// How far along the last of the nodes is that are not on the CAD and are pulled with full strength.
+fn farthest_back(wall: &Wall, pull: &[f64]) -> Option<f64> {
+    let left = wall.off_cad().filter(|(n, _)| pull[*n] >= 1.0);
+    left.map(|(_, fraction)| fraction).min_by(f64::total_cmp)
 }

@@ -1,4 +1,4 @@
-//! Places around which the wall is taken back, or goes no farther.
+//! Spots around which the wall is taken back, or goes no farther.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -8,7 +8,7 @@ use crate::mesh::{Mesh, NodeId};
 /// Reach, in distances to the wall plus the element's size.
 const REACH: f64 = 2.0;
 
-/// A place around which the wall is taken back, or goes no farther.
+/// A spot around which the wall is taken back, or goes no farther.
 pub(super) struct Spot {
     middle: DVec3,
     reach: f64,
@@ -30,7 +30,7 @@ impl Spot {
     }
 
     /// What stays of the displacement at `x`: `keep` within half the reach, all beyond it, smooth between.
-    pub(super) fn share(&self, x: DVec3, keep: f64) -> f64 {
+    pub(super) fn fraction(&self, x: DVec3, keep: f64) -> f64 {
         let t = (2.0 * x.distance(self.middle) / self.reach - 1.0).clamp(0.0, 1.0);
         keep + (1.0 - keep) * t * t * (3.0 - 2.0 * t)
     }

@@ -3,9 +3,6 @@
 mod constraint;
 pub mod fit;
 mod project;
-mod state;
 
 pub use constraint::CadConstraint;
 pub use project::project;
-pub use state::Projected;
-pub(crate) use state::group_of;

@@ -1,4 +1,4 @@
-//! New boundary nodes go to their CAD group; and the constraint that keeps them there while the mesh is smoothed.
+//! New boundary nodes go to their CAD group.
 //!
 //! A node's wish is first spread so that the wall polynomial follows the CAD well: the inner nodes of an edge go to equal
 //! fractions of the length of the projected edge, those of a face to the smoothest extension of its edges' displacements. Projecting
@@ -40,99 +40,81 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
-use super::state::{Projected, group_of};
 use crate::associate::{Association, Classification};
+use crate::curve::level::{Case, Level};
 use crate::element::{Cell, Order, interior_count, interior_extension, interior_start};
-use crate::mesh::elevate::Elevated;
-use crate::mesh::{Boundary, NodeId};
+use crate::mesh::NodeId;
 
 /// Edges, faces or nodes that are projected at a time: what they take while they wait does not grow with the mesh.
 const BATCH: usize = 1 << 12;
-/// Places between two nodes of an edge at which its projection is measured.
+/// Positions between two nodes of an edge at which its projection is measured.
 const STATIONS: usize = 4;
 /// A projected edge this much longer than its chord does not run beside it: its nodes are not spread.
 const LONGEST: f64 = 2.0;
 
-/// Projects the boundary nodes of an elevated mesh.
-///
-/// With `freeze_linear` the linear nodes stay where they are, on the CAD or not.
-#[must_use]
-pub fn project(elevated: &Elevated, boundary: &Boundary, association: &Association, freeze_linear: bool) -> Projected {
-    let nodes = elevated.boundary_nodes;
-    let mut classifications = association.nodes.clone();
-    classifications.resize(nodes, Classification::Free);
-    let mut projector = Projector {
-        elevated,
-        association,
-        result: Projected {
-            classifications,
-            displacement: vec![DVec3::ZERO; nodes],
-            sizes: FxHashMap::default(),
-            beyond: Vec::new(),
-            projections: 0,
-            unproven: 0,
-        },
-    };
-    if !freeze_linear {
+/// Projects the boundary nodes of a level; [`Settings::freeze_linear`](crate::curve::Settings::freeze_linear) leaves the linear ones
+/// where they are, on the CAD or not.
+pub fn project(level: &mut Level) {
+    let mut projector = Projector { level };
+    if !projector.level.case.settings.freeze_linear {
         projector.linear_nodes();
     }
-    projector.edges(boundary);
-    projector.faces(boundary);
-    projector.result
+    projector.edges();
+    projector.faces();
 }
 
-/// Places on the CAD, and how many closest points were asked for.
+/// Positions on the CAD, and how many closest points were asked for.
 struct Feet {
-    places: Vec<DVec3>,
-    projections: usize,
+    positions: Vec<DVec3>,
+    queries: usize,
     unproven: usize,
 }
 
-struct Projector<'a> {
-    elevated: &'a Elevated,
-    association: &'a Association,
-    result: Projected,
+struct Projector<'l, 'a> {
+    level: &'l mut Level<'a>,
 }
 
-impl Projector<'_> {
-    fn straight(&self, node: NodeId) -> DVec3 {
-        self.elevated.mesh.points[node.index()]
+impl<'a> Projector<'_, 'a> {
+    fn association(&self) -> &'a Association {
+        self.level.case.association
     }
 
-    /// The feet of wishes on a classification's group; planes and fixed places need no CAD.
+    fn straight(&self, node: NodeId) -> DVec3 {
+        self.level.straight()[node.index()]
+    }
+
+    /// The feet of wishes on a classification's group; planes and fixed positions need no CAD.
     fn feet(&self, classification: Classification, wishes: &[DVec3]) -> Feet {
-        let places = match (
-            classification,
-            self.association.plane_of(classification),
-            group_of(self.association, classification),
-        ) {
+        let association = self.association();
+        let held = (classification, association.plane_of(classification), association.group_of(classification));
+        let positions = match held {
             (_, Some(plane), _) => wishes.iter().map(|&x| plane.closest(x)).collect(),
-            (Classification::Vertex(place), ..) => vec![place; wishes.len()],
+            (Classification::Vertex(position), ..) => vec![position; wishes.len()],
             (_, _, Some(group)) => {
                 let feet: Vec<Foot> = wishes.iter().map(|&x| group.closest(x, None)).collect();
                 let unproven = feet.iter().filter(|f| !f.is_proven()).count();
-                return Feet { places: feet.iter().map(|f| f.point).collect(), projections: feet.len(), unproven };
+                return Feet { positions: feet.iter().map(|f| f.point).collect(), queries: feet.len(), unproven };
             }
             _ => wishes.to_vec(),
         };
-        Feet { places, projections: 0, unproven: 0 }
+        Feet { positions, queries: 0, unproven: 0 }
     }
 
-    /// Takes the places of some nodes.
+    /// Puts some nodes at their feet.
     fn take(&mut self, nodes: impl Iterator<Item = usize>, feet: Feet) {
-        self.result.projections += feet.projections;
-        self.result.unproven += feet.unproven;
-        for (node, place) in nodes.zip(feet.places) {
-            self.result.displacement[node] = place - self.elevated.mesh.points[node];
+        let level = &mut *self.level;
+        level.wall.count_queries(feet.queries, feet.unproven);
+        for (node, position) in nodes.zip(feet.positions) {
+            level.wall.displace(node, position - level.elevated.mesh.points[node]);
         }
     }
 
     fn linear_nodes(&mut self) {
-        let classifications = &self.association.nodes;
-        let boundary: Vec<usize> =
-            (0..self.elevated.linear_nodes).filter(|&n| classifications[n] != Classification::Free).collect();
+        let classifications = &self.association().nodes;
+        let on_boundary = |n: &usize| classifications[*n] != Classification::Free;
+        let boundary: Vec<usize> = (0..self.level.elevated.linear_nodes).filter(on_boundary).collect();
         for batch in boundary.chunks(BATCH) {
-            let own = |&n: &usize| self.feet(classifications[n], &[self.elevated.mesh.points[n]]);
+            let own = |&n: &usize| self.feet(classifications[n], &[self.level.straight()[n]]);
             let feet: Vec<Feet> = batch.par_iter().map(own).collect();
             for (&n, feet) in batch.iter().zip(feet) {
                 self.take(once(n), feet);
@@ -140,15 +122,16 @@ impl Projector<'_> {
         }
     }
 
-    fn edges(&mut self, boundary: &Boundary) {
-        let order = self.elevated.mesh.order;
+    fn edges(&mut self) {
+        let elevated = &self.level.elevated;
+        let order = elevated.mesh.order;
         let inner = interior_count(Cell::Line, order);
-        let carriers = &self.elevated.carriers[Cell::Line as usize];
-        let on_boundary = carriers.iter().take_while(|(_, first)| first.index() < self.elevated.boundary_nodes);
+        let carriers = &elevated.carriers[Cell::Line as usize];
+        let on_boundary = carriers.iter().take_while(|(_, first)| first.index() < elevated.boundary_nodes);
         let known: FxHashMap<[NodeId; 2], NodeId> =
             on_boundary.map(|(ends, first)| ([ends[0], ends[1]], first)).collect();
-        let classifications = self.association.edges.iter().zip(&boundary.edges);
-        let edges: Vec<(Classification, [NodeId; 2], usize)> = classifications
+        let classified = self.association().edges.iter().zip(&self.level.case.boundary.edges);
+        let edges: Vec<(Classification, [NodeId; 2], usize)> = classified
             .filter_map(|(&classification, ends)| known.get(ends).map(|first| (classification, *ends, first.index())))
             .collect();
         for batch in edges.chunks(BATCH) {
@@ -156,64 +139,62 @@ impl Projector<'_> {
                 batch.par_iter().map(|&(classification, ends, _)| self.spread(classification, ends, order)).collect();
             for (&(classification, ends, first), feet) in batch.iter().zip(feet) {
                 let size = self.straight(ends[0]).distance(self.straight(ends[1]));
-                for end in ends {
-                    let own = self.result.sizes.entry(end.index()).or_insert(size);
-                    *own = own.min(size);
-                }
+                ends.iter().for_each(|end| self.level.wall.meets_edge(end.index(), size));
                 for node in first..first + inner {
-                    self.result.classifications[node] = classification;
-                    self.result.sizes.insert(node, size);
+                    self.level.wall.classify(node, classification, size);
                 }
                 self.take(first..first + inner, feet);
             }
         }
     }
 
-    /// Places of an edge's inner nodes: on the CAD, at equal fractions of the projected edge's length.
+    /// Positions of an edge's inner nodes: on the CAD, at equal fractions of the projected edge's length.
     fn spread(&self, classification: Classification, ends: [NodeId; 2], order: Order) -> Feet {
         let p = order.get();
-        let [a, b] = ends.map(|n| self.straight(n) + self.result.displacement[n.index()]);
+        let [a, b] = ends.map(|n| self.level.displaced(n));
         let at = |s: f64| a.lerp(b, s);
         let even: Vec<f64> = (1..p).map(|k| k as f64 / p as f64).collect();
-        let chord = |shares: &[f64]| shares.iter().map(|&s| at(s)).collect::<Vec<_>>();
-        if group_of(self.association, classification).is_none() || self.association.plane_of(classification).is_some() {
+        let chord = |fractions: &[f64]| fractions.iter().map(|&s| at(s)).collect::<Vec<_>>();
+        let association = self.association();
+        if association.group_of(classification).is_none() || association.plane_of(classification).is_some() {
             return self.feet(classification, &chord(&even));
         }
         let stations: Vec<f64> = (1..p * STATIONS).map(|k| k as f64 / (p * STATIONS) as f64).collect();
         let measured = self.feet(classification, &chord(&stations));
-        let shares = equal_lengths(a, b, &stations, &measured.places, p).unwrap_or(even);
-        self.feet(classification, &chord(&shares)).after(&measured)
+        let fractions = equal_lengths(a, b, &stations, &measured.positions, p).unwrap_or(even);
+        self.feet(classification, &chord(&fractions)).after(&measured)
     }
 
-    fn faces(&mut self, boundary: &Boundary) {
-        let order = self.elevated.mesh.order;
-        let elevated = self.elevated;
-        let cell = |f: usize| boundary.faces[f].cell;
-        let nodes = |f: usize| boundary.nodes(f, &elevated.mesh).split_at(interior_start(cell(f), order));
+    fn faces(&mut self) {
+        let Case { boundary, association, .. } = self.level.case;
         let faces: Vec<usize> = (0..boundary.faces.len()).collect();
-        for (faces, classifications) in faces.chunks(BATCH).zip(self.association.faces.chunks(BATCH)) {
+        for (faces, classifications) in faces.chunks(BATCH).zip(association.faces.chunks(BATCH)) {
             let own = |(&f, &classification): (&usize, &Classification)| {
-                let (rim, inner) = nodes(f);
-                self.feet(classification, &self.wishes(cell(f), rim, inner))
+                let (rim, inner) = self.rim_and_inside(f);
+                self.feet(classification, &self.wishes(boundary.faces[f].cell, rim, inner))
             };
             let feet: Vec<Feet> = faces.par_iter().zip(classifications).map(own).collect();
             for ((&f, &classification), feet) in faces.iter().zip(classifications).zip(feet) {
-                let (rim, inner) = nodes(f);
+                let (rim, inner) = self.rim_and_inside(f);
                 let size = self.straight(rim[0]).distance(self.straight(rim[1]));
-                for node in inner {
-                    self.result.classifications[node.index()] = classification;
-                    self.result.sizes.insert(node.index(), size);
-                }
-                self.take(inner.iter().map(|n| n.index()), feet);
+                let inner: Vec<usize> = inner.iter().map(|n| n.index()).collect();
+                inner.iter().for_each(|&node| self.level.wall.classify(node, classification, size));
+                self.take(inner.into_iter(), feet);
             }
         }
     }
 
+    /// Nodes of a boundary face: those of its rim, and those inside.
+    fn rim_and_inside(&self, face: usize) -> (&[NodeId], &[NodeId]) {
+        let (boundary, mesh) = (self.level.case.boundary, self.level.mesh());
+        boundary.nodes(face, mesh).split_at(interior_start(boundary.faces[face].cell, mesh.order))
+    }
+
     /// Where the inner nodes of a face would go: the smoothest extension of its rim's displacement.
     fn wishes(&self, cell: Cell, rim: &[NodeId], inner: &[NodeId]) -> Vec<DVec3> {
-        let extension = interior_extension(cell, self.elevated.mesh.order);
+        let extension = interior_extension(cell, self.level.mesh().order);
         let moved = |weights: &[f64]| -> DVec3 {
-            rim.iter().zip(weights).map(|(n, &w)| self.result.displacement[n.index()] * w).sum()
+            rim.iter().zip(weights).map(|(n, &w)| self.level.wall.displacement(n.index()) * w).sum()
         };
         let inner = inner.iter().zip(extension.chunks_exact(rim.len()));
         inner.map(|(&node, weights)| self.straight(node) + moved(weights)).collect()
@@ -223,20 +204,20 @@ impl Projector<'_> {
 impl Feet {
     /// With the counts of the feet that led to these.
     fn after(self, earlier: &Feet) -> Feet {
-        let (projections, unproven) = (self.projections + earlier.projections, self.unproven + earlier.unproven);
-        Feet { projections, unproven, ..self }
+        let (queries, unproven) = (self.queries + earlier.queries, self.unproven + earlier.unproven);
+        Feet { queries, unproven, ..self }
     }
 }
 
-/// Chord shares whose feet divide the projected edge into `p` pieces of equal length; `None` where the feet do not run
+/// Chord fractions whose feet divide the projected edge into `p` pieces of equal length; `None` where the feet do not run
 /// along the chord from `a` to `b`.
 fn equal_lengths(a: DVec3, b: DVec3, stations: &[f64], feet: &[DVec3], p: usize) -> Option<Vec<f64>> {
     let mut lengths = vec![0.0];
-    let mut shares = vec![0.0];
+    let mut fractions = vec![0.0];
     let mut last = a;
-    for (&foot, &share) in feet.iter().chain([&b]).zip(stations.iter().chain([&1.0])) {
+    for (&foot, &fraction) in feet.iter().chain([&b]).zip(stations.iter().chain([&1.0])) {
         lengths.push(lengths.last()? + last.distance(foot));
-        shares.push(share);
+        fractions.push(fraction);
         if (foot - last).dot(b - a) <= 0.0 {
             return None;
         }
@@ -246,18 +227,18 @@ fn equal_lengths(a: DVec3, b: DVec3, stations: &[f64], feet: &[DVec3], p: usize)
     if total > LONGEST * a.distance(b) {
         return None;
     }
-    (1..p).map(|k| inverted(&lengths, &shares, total * k as f64 / p as f64)).collect()
+    (1..p).map(|k| inverted(&lengths, &fractions, total * k as f64 / p as f64)).collect()
 }
 
-/// The share at which a rising table of lengths reaches `length`: the cubic through the four nearest entries.
-fn inverted(lengths: &[f64], shares: &[f64], length: f64) -> Option<f64> {
+/// The fraction at which a rising table of lengths reaches `length`: the cubic through the four nearest entries.
+fn inverted(lengths: &[f64], fractions: &[f64], length: f64) -> Option<f64> {
     let above = lengths.partition_point(|&l| l < length);
     let first = above.saturating_sub(2).min(lengths.len().checked_sub(4)?);
-    let (x, y) = (&lengths[first..first + 4], &shares[first..first + 4]);
-    let mut share = 0.0;
+    let (x, y) = (&lengths[first..first + 4], &fractions[first..first + 4]);
+    let mut fraction = 0.0;
     for i in 0..4 {
         let weight: f64 = (0..4).filter(|&j| j != i).map(|j| (length - x[j]) / (x[i] - x[j])).product();
-        share += weight * y[i];
+        fraction += weight * y[i];
     }
-    Some(share)
+    Some(fraction)
 }

@@ -12,7 +12,7 @@ use super::{
 use crate::associate::Classification;
 use crate::certify::{FaceFinding, Verdict};
 use crate::curve::layers::straight_elements;
-use crate::curve::recover::backtrack::GivenUp;
+use crate::curve::recover::OffCadFace;
 use crate::curve::{Curved, Job};
 use crate::element::{Cell, Order, Samples, basis};
 use crate::formats::{Field, Support, Values};
@@ -46,7 +46,7 @@ pub fn report(job: &Job, curved: &Curved) -> Report {
         cells,
         patches,
         unlinked_faces: curved.association.faces.iter().filter(|h| !linked(h)).count(),
-        given_up: curved.given_up.iter().map(|given| given_up(curved, given)).collect(),
+        given_up: curved.off_cad.iter().map(|given| given_up(curved, given)).collect(),
         walls: walls(curved),
         grid_line_angles,
         certificate: CertificateReport::new(mesh, &curved.certificate),
@@ -57,7 +57,7 @@ pub fn report(job: &Job, curved: &Curved) -> Report {
             start: curved.smoothed.start,
             end: curved.smoothed.end,
         },
-        projections: Projections { count: curved.projected.projections, unproven: curved.projected.unproven },
+        projections: Projections { count: curved.wall.queries, unproven: curved.wall.unproven },
         notes: curved.mesh.notes.iter().chain(&curved.association.notes).cloned().collect(),
         seconds: curved.seconds.iter().map(|&(step, seconds)| StepReport { step: step.name(), seconds }).collect(),
         peak_memory: peak_memory(),
@@ -136,7 +136,7 @@ fn patch(curved: &Curved, entity: EntityKey) -> PatchReport {
         surfaces: on.iter().map(|&s| curved.association.surfaces[s].label.clone()).collect(),
         faces: faces.len(),
         farthest: distances.into_iter().reduce(f64::max),
-        largest_offset: corners.map(|n| curved.projected.displacement[n.index()].length()).fold(0.0, f64::max),
+        largest_offset: corners.map(|n| curved.wall.displacement(n.index()).length()).fold(0.0, f64::max),
     }
 }
 
@@ -155,7 +155,7 @@ fn distance(curved: &Curved, face: usize) -> Option<f64> {
     far.reduce(f64::max)
 }
 
-fn given_up(curved: &Curved, given: &GivenUp) -> GivenUpFace {
+fn given_up(curved: &Curved, given: &OffCadFace) -> GivenUpFace {
     let face = &curved.boundary.faces[given.face];
     let corners = &curved.boundary.corners[given.face];
     let middle: DVec3 = corners.iter().map(|n| curved.mesh.points[n.index()]).sum::<DVec3>() / corners.len() as f64;
@@ -163,7 +163,7 @@ fn given_up(curved: &Curved, given: &GivenUp) -> GivenUpFace {
         element: curved.mesh.blocks[face.block].tags[face.element],
         entity: face.entity.to_string(),
         order: given.order.get(),
-        share: given.share,
+        share: given.fraction,
         place: middle.to_array(),
     }
 }

@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 use cad::{Foot, Group};
 use glam::DVec3;
 use rayon::prelude::*;
+use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::Fit;
-use crate::associate::Classification;
-use crate::curve::wall::group_of;
+use super::table::Table;
+use crate::associate::{Association, Classification};
+use crate::curve::level::Level;
 use crate::element::{Cell, edge_nodes};
-use crate::mesh::NodeId;
+use crate::mesh::{Boundary, NodeId};
 
 /// Faces that are measured at a time: what they take while they wait does not grow with the mesh.
 const BATCH: usize = 1 << 12;
@@ -37,33 +38,51 @@ pub(super) type Place = (bool, usize);
 /// Largest distance by surface and curve.
 pub(super) type Levels = BTreeMap<Place, f64>;
 
-impl<'a> Fit<'a> {
+/// A level whose wall is being fitted.
+pub(super) struct Fit<'l, 'a> {
+    pub(super) level: &'l mut Level<'a>,
+    /// Nodes of periodic pairs.
+    pub(super) paired: FxHashSet<NodeId>,
+    /// Displacements as projected.
+    pub(super) start: Vec<DVec3>,
+    pub(super) tables: FxHashMap<Cell, Table>,
+}
+
+impl<'a> Fit<'_, 'a> {
+    fn boundary(&self) -> &'a Boundary {
+        self.level.case.boundary
+    }
+
+    fn association(&self) -> &'a Association {
+        self.level.case.association
+    }
+
     pub(super) fn cell(&self, part: Part) -> Cell {
         match part {
-            Part::Face(face) => self.boundary.faces[face].cell,
+            Part::Face(face) => self.boundary().faces[face].cell,
             Part::Edge(_) => Cell::Line,
         }
     }
 
     pub(super) fn classification(&self, part: Part) -> Classification {
         match part {
-            Part::Face(face) => self.association.faces[face],
-            Part::Edge(edge) => self.association.edges[edge],
+            Part::Face(face) => self.association().faces[face],
+            Part::Edge(edge) => self.association().edges[edge],
         }
     }
 
     /// All nodes, those of the rim first.
     pub(super) fn nodes(&self, part: Part) -> Vec<NodeId> {
-        let mesh = &self.elevated.mesh;
-        let of_face = |face: usize| self.boundary.nodes(face, mesh);
+        let mesh = self.level.mesh();
+        let of_face = |face: usize| self.boundary().nodes(face, mesh);
         match part {
             Part::Face(face) => of_face(face).to_vec(),
             Part::Edge(edge) => {
-                let ends = self.boundary.edges[edge];
-                let Some(&face) = self.boundary.edge_faces[edge].first() else { return ends.to_vec() };
+                let ends = self.boundary().edges[edge];
+                let Some(&face) = self.boundary().edge_faces[edge].first() else { return ends.to_vec() };
                 let nodes = of_face(face);
                 let own = |slots: &&Vec<usize>| ends.iter().all(|end| slots[..2].iter().any(|&s| nodes[s] == *end));
-                let slots = edge_nodes(self.boundary.faces[face].cell, mesh.order).iter().find(own);
+                let slots = edge_nodes(self.boundary().faces[face].cell, mesh.order).iter().find(own);
                 slots.map_or(ends.to_vec(), |slots| slots.iter().map(|&s| nodes[s]).collect())
             }
         }
@@ -76,28 +95,28 @@ impl<'a> Fit<'a> {
     }
 
     pub(super) fn straight(&self, node: NodeId) -> DVec3 {
-        self.elevated.mesh.points[node.index()]
+        self.level.straight()[node.index()]
     }
 
-    pub(super) fn place(&self, node: NodeId) -> DVec3 {
-        self.straight(node) + self.projected.displacement[node.index()]
+    pub(super) fn position(&self, node: NodeId) -> DVec3 {
+        self.level.displaced(node)
     }
 
     /// The group that holds a classification's nodes; planes need none.
     pub(super) fn group(&self, classification: Classification) -> Option<&'a Group> {
-        group_of(self.association, classification).filter(|_| self.association.plane_of(classification).is_none())
+        self.association().group_of(classification).filter(|_| self.association().plane_of(classification).is_none())
     }
 
     pub(super) fn slides(&self, node: NodeId) -> bool {
-        let new = node.index() >= self.elevated.linear_nodes;
-        new && self.group(self.projected.classification(node.index())).is_some() && !self.tied.contains(&node)
+        let new = node.index() >= self.level.elevated.linear_nodes;
+        new && self.group(self.level.wall.classification(node.index())).is_some() && !self.paired.contains(&node)
     }
 
     /// Length of a part's first edge.
     pub(super) fn size(&self, part: Part) -> f64 {
         let [a, b] = match part {
-            Part::Face(face) => [self.boundary.corners[face][0], self.boundary.corners[face][1]],
-            Part::Edge(edge) => self.boundary.edges[edge],
+            Part::Face(face) => [self.boundary().corners[face][0], self.boundary().corners[face][1]],
+            Part::Edge(edge) => self.boundary().edges[edge],
         };
         self.straight(a).distance(self.straight(b))
     }
@@ -105,8 +124,8 @@ impl<'a> Fit<'a> {
     /// Points of the wall, and their feet.
     pub(super) fn feet(&self, part: Part, values: &[Vec<f64>]) -> Vec<(DVec3, Foot)> {
         let Some(group) = self.group(self.classification(part)) else { return Vec::new() };
-        let places: Vec<DVec3> = self.nodes(part).into_iter().map(|n| self.place(n)).collect();
-        let point = |values: &Vec<f64>| places.iter().zip(values).map(|(x, v)| *x * *v).sum();
+        let positions: Vec<DVec3> = self.nodes(part).into_iter().map(|n| self.position(n)).collect();
+        let point = |values: &Vec<f64>| positions.iter().zip(values).map(|(x, v)| *x * *v).sum();
         values.iter().map(point).map(|x| (x, group.closest(x, None))).collect()
     }
 
@@ -116,9 +135,9 @@ impl<'a> Fit<'a> {
 
     /// The faces and edges that have nodes to slide, roughly measured.
     pub(super) fn pieces(&self) -> Vec<Piece> {
-        let faces = (0..self.boundary.faces.len()).map(Part::Face);
-        let on_curve = |&edge: &usize| matches!(self.association.edges[edge], Classification::Curve(_));
-        let parts: Vec<Part> = faces.chain((0..self.boundary.edges.len()).filter(on_curve).map(Part::Edge)).collect();
+        let faces = (0..self.boundary().faces.len()).map(Part::Face);
+        let on_curve = |&edge: &usize| matches!(self.association().edges[edge], Classification::Curve(_));
+        let parts: Vec<Part> = faces.chain((0..self.boundary().edges.len()).filter(on_curve).map(Part::Edge)).collect();
         let measured = |&part: &Part| {
             let slides =
                 self.group(self.classification(part)).is_some() && self.rim(part).into_iter().any(|n| self.slides(n));
@@ -147,7 +166,7 @@ impl<'a> Fit<'a> {
 
     /// How far the nodes of a part's rim have slid.
     pub(super) fn shifts(&self, part: Part) -> Vec<DVec3> {
-        let slid = |n: NodeId| self.projected.displacement[n.index()] - self.start[n.index()];
+        let slid = |n: NodeId| self.level.wall.displacement(n.index()) - self.start[n.index()];
         self.rim(part).into_iter().map(slid).collect()
     }
 }

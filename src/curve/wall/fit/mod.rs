@@ -25,15 +25,13 @@ mod table;
 use cad::{Evaluation, Foot};
 use glam::DVec3;
 use rayon::prelude::*;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 
-use crate::associate::{Association, Classification, normal_at};
-use crate::curve::periodic::PeriodicConstraint;
-use crate::curve::wall::Projected;
+use crate::associate::{Classification, normal_at};
+use crate::curve::level::{Case, Level};
 use crate::element::Cell;
-use crate::mesh::elevate::Elevated;
-use crate::mesh::{Boundary, NodeId};
-use measure::{Part, Piece};
+use crate::mesh::NodeId;
+use measure::{Fit, Part, Piece};
 use model::{Model, Response, Slider, gradients, relax};
 use table::Table;
 
@@ -77,17 +75,12 @@ const UNMOVED: f64 = 1e-6;
 const NO_DIRECTION: f64 = 1e-9;
 
 /// Lets nodes of wall edges slide where that takes the wall nearer to the CAD; nodes of periodic pairs stay.
-pub fn fit(
-    elevated: &Elevated,
-    boundary: &Boundary,
-    association: &Association,
-    periodic: &PeriodicConstraint,
-    projected: &mut Projected,
-) {
-    let tables = [Cell::Line, Cell::Triangle, Cell::Quad].map(|cell| (cell, Table::new(cell, elevated.mesh.order)));
-    let start = projected.displacement.clone();
-    let tied = periodic.images().iter().flat_map(|image| [image.node, image.of]).collect();
-    let mut fit = Fit { elevated, boundary, association, tied, projected, start, tables: tables.into_iter().collect() };
+pub fn fit(level: &mut Level) {
+    let tables =
+        [Cell::Line, Cell::Triangle, Cell::Quad].map(|cell| (cell, Table::new(cell, level.elevated.mesh.order)));
+    let start = level.wall.displacements();
+    let paired = level.periodic.images().iter().flat_map(|image| [image.node, image.of]).collect();
+    let mut fit = Fit { level, paired, start, tables: tables.into_iter().collect() };
     let mut pieces = fit.pieces();
     for _ in 0..ROUNDS {
         if !fit.round(&mut pieces) {
@@ -95,23 +88,12 @@ pub fn fit(
         }
     }
     // Faces that stay off the CAD share edges with those on it.
+    let Case { boundary, association, .. } = fit.level.case;
     let straight = |&face: &usize| association.faces[face] == Classification::Straight;
     fit.lead(&(0..boundary.faces.len()).filter(straight).map(Part::Face).collect::<Vec<_>>());
 }
 
-struct Fit<'a> {
-    elevated: &'a Elevated,
-    boundary: &'a Boundary,
-    association: &'a Association,
-    /// Nodes of periodic pairs.
-    tied: FxHashSet<NodeId>,
-    projected: &'a mut Projected,
-    /// Displacements as projected.
-    start: Vec<DVec3>,
-    tables: FxHashMap<Cell, Table>,
-}
-
-impl Fit<'_> {
+impl Fit<'_, '_> {
     /// One fit of the farthest faces; false where it was not worth it.
     fn round(&mut self, pieces: &mut [Piece]) -> bool {
         let sliding = self.sliding(pieces);
@@ -135,15 +117,15 @@ impl Fit<'_> {
         }
         relax(&mut sliders, &mut models, SWEEPS);
         let allowed: Vec<f64> = models.par_iter().map(|own| self.allowed(own, pieces[own.piece].part)).collect();
-        let size = |slider: &Slider| self.projected.sizes.get(&slider.node.index()).copied().unwrap_or(0.0);
+        let size = |slider: &Slider| self.level.wall.size(slider.node.index()).unwrap_or(0.0);
         let share = |slider: &Slider| {
             let moves = slider.step.length() > UNMOVED * size(slider);
             if moves { slider.at.iter().map(|&(m, _)| allowed[m]).fold(1.0, f64::min) } else { 0.0 }
         };
         let shares = sliders.iter().map(share).collect();
-        let kept = self.projected.displacement.clone();
+        let kept = self.level.wall.displacements();
         let Some(far) = self.attempt(pieces, &sliders, &models, shares) else {
-            self.projected.displacement = kept;
+            self.level.wall.displace_all(&kept);
             return false;
         };
         let mut after = pieces.to_vec();
@@ -153,7 +135,7 @@ impl Fit<'_> {
         if worth {
             pieces.copy_from_slice(&after);
         } else {
-            self.projected.displacement = kept;
+            self.level.wall.displace_all(&kept);
         }
         worth
     }
@@ -177,9 +159,9 @@ impl Fit<'_> {
     }
 
     fn slider(&self, node: NodeId) -> Slider {
-        let classification = self.projected.classification(node.index());
+        let classification = self.level.wall.classification(node.index());
         let evaluation = self.group(classification).and_then(|group| {
-            let foot = group.closest(self.place(node), None);
+            let foot = group.closest(self.position(node), None);
             group.evaluate(foot.entity, foot.parameters)
         });
         let along = match (classification, evaluation) {
@@ -206,7 +188,7 @@ impl Fit<'_> {
         };
         let normals: Vec<DVec3> = feet.iter().map(away).collect();
         let inner: Vec<DVec3> =
-            nodes[rim.len()..].iter().map(|&n| normal(self.place(n)).unwrap_or(DVec3::ZERO)).collect();
+            nodes[rim.len()..].iter().map(|&n| normal(self.position(n)).unwrap_or(DVec3::ZERO)).collect();
         let slopes = |r: usize, along: DVec3| -> Vec<f64> {
             let moved = |values: &Vec<f64>| -> DVec3 {
                 let led = inner.iter().enumerate().map(|(i, normal)| {
@@ -247,7 +229,7 @@ impl Fit<'_> {
         models: &[Model],
         mut shares: Vec<f64>,
     ) -> Option<Vec<f64>> {
-        let before: Vec<DVec3> = sliders.iter().map(|slider| self.place(slider.node)).collect();
+        let before: Vec<DVec3> = sliders.iter().map(|slider| self.position(slider.node)).collect();
         let mut far: Vec<f64> = vec![0.0; models.len()];
         let mut moved = vec![true; sliders.len()];
         for _ in 0..TRIES {
@@ -282,7 +264,7 @@ impl Fit<'_> {
     /// Puts nodes that move at a share of their steps from `before`, on the CAD.
     fn slide(&mut self, sliders: &[Slider], before: &[DVec3], shares: &[f64], moved: &[bool]) {
         let foot = |s: usize| {
-            let group = self.group(self.projected.classification(sliders[s].node.index())).filter(|_| shares[s] > 0.0);
+            let group = self.group(self.level.wall.classification(sliders[s].node.index())).filter(|_| shares[s] > 0.0);
             group.map(|group| group.closest(before[s] + sliders[s].step * shares[s], None))
         };
         let moved: Vec<usize> = (0..sliders.len()).filter(|&s| moved[s]).collect();
@@ -299,7 +281,7 @@ impl Fit<'_> {
             let group = self.group(self.classification(part));
             let inner = nodes[rim.len()..].iter().zip(table.extension.chunks_exact(rim.len()));
             let foot = |(&node, weights): (&NodeId, &[f64])| {
-                let moved = |(n, &w): (&NodeId, &f64)| self.projected.displacement[n.index()] * w;
+                let moved = |(n, &w): (&NodeId, &f64)| self.level.wall.displacement(n.index()) * w;
                 let wish = self.straight(node) + rim.iter().zip(weights).map(moved).sum::<DVec3>();
                 (node, wish, group.map(|group| group.closest(wish, None)))
             };
@@ -313,9 +295,10 @@ impl Fit<'_> {
 
     /// Puts a node at its foot, or else at `otherwise`.
     fn put(&mut self, node: NodeId, foot: Option<&Foot>, otherwise: DVec3) {
-        self.projected.projections += foot.iter().len();
-        self.projected.unproven += foot.iter().filter(|foot| !foot.is_proven()).count();
-        let place = foot.map_or(otherwise, |foot| foot.point);
-        self.projected.displacement[node.index()] = place - self.straight(node);
+        let unproven = foot.iter().filter(|foot| !foot.is_proven()).count();
+        let position = foot.map_or(otherwise, |foot| foot.point);
+        let displacement = position - self.straight(node);
+        self.level.wall.count_queries(foot.iter().len(), unproven);
+        self.level.wall.displace(node.index(), displacement);
     }
 }

@@ -1,0 +1,91 @@
+//! Why there is no curved mesh.
+
+use std::path::Path;
+
+use super::checkpoint::CheckpointError;
+use crate::associate::{AssociateError, ClassifyError, LinkageError, UnknownPatch};
+use crate::element::Order;
+use crate::formats;
+use crate::mesh::TooMany;
+
+/// Why a mesh in memory was not curved.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The linkage does not fit the mesh or the CAD; the message names its file.
+    #[error(transparent)]
+    Linkage(#[from] LinkageError),
+    /// The checkpoint cannot be gone on from; the message names its file.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    /// Mesh and CAD do not belong together.
+    #[error(transparent)]
+    Associate(Box<AssociateError>),
+    /// The curved mesh has more nodes than can be numbered.
+    #[error(transparent)]
+    TooMany(#[from] TooMany),
+    /// A patch was named that the mesh does not have.
+    #[error(transparent)]
+    UnknownPatch(#[from] UnknownPatch),
+    /// Nothing to curve.
+    #[error("has no volume elements (tets, pyramids, prisms, hexes): nothing to curve")]
+    NoVolume,
+    /// Nothing to curve onto.
+    #[error("has no faces: nothing to curve onto")]
+    NoFaces,
+    /// Curved already.
+    #[error("is of order {order} already; give the linear mesh")]
+    NotLinear {
+        /// The mesh's order.
+        order: Order,
+    },
+    /// The linear mesh is invalid.
+    #[error("the linear mesh is itself inverted in {count} elements: {listed}; mend it first")]
+    Inverted {
+        /// How many elements.
+        count: usize,
+        /// The first of them, by kind and number.
+        listed: String,
+    },
+}
+
+impl From<ClassifyError> for Error {
+    fn from(error: ClassifyError) -> Error {
+        match error {
+            ClassifyError::Linkage(error) => error.into(),
+            ClassifyError::Associate(cause) => Error::Associate(Box::new(cause)),
+        }
+    }
+}
+
+/// Why there is no curved mesh of a job. Every message names the file it is about.
+#[derive(Debug, thiserror::Error)]
+pub enum JobError {
+    /// The mesh file.
+    #[error(transparent)]
+    Mesh(#[from] formats::Error),
+    /// The CAD file.
+    #[error(transparent)]
+    Cad(#[from] cad::ReadError),
+    /// What was read cannot be curved.
+    #[error("{about}{cause}")]
+    Curve {
+        /// The files that it is about, where the cause does not name them.
+        about: String,
+        /// Why.
+        cause: Error,
+    },
+}
+
+impl JobError {
+    /// An error with the names of the files that it is about.
+    pub(super) fn new(cause: Error, mesh: &Path, cad: &Path) -> JobError {
+        let (mesh, cad) = (mesh.display(), cad.display());
+        let about = match &cause {
+            Error::Linkage(_) | Error::Checkpoint(_) => String::new(),
+            Error::Associate(_) => format!("{mesh} and {cad}: "),
+            Error::NoFaces => format!("{cad}: "),
+            _ => format!("{mesh}: "),
+        };
+        JobError::Curve { about, cause }
+    }
+}

@@ -1,0 +1,121 @@
+//! A curving from files.
+
+use std::path::PathBuf;
+
+use cad::{Model, ReadOptions};
+
+use super::error::{Error, JobError};
+use super::input::{Associated, check_cad, check_mesh};
+use super::observer::{Clock, Observer, Step};
+use super::settings::Settings;
+use super::{Curved, drive};
+use crate::associate::{self, AssociateError, Linkage, Summary};
+use crate::element::Order;
+use crate::formats;
+use crate::mesh::{Boundary, Mesh};
+
+/// What is to be curved, and how.
+#[derive(Clone, Debug)]
+pub struct Job {
+    /// The linear mesh.
+    pub mesh: PathBuf,
+    /// The CAD it was made on.
+    pub cad: PathBuf,
+    /// The MeshLink file that links the two; without it the mesh's entity tags do, or else geometry.
+    pub linkage: Option<PathBuf>,
+    /// What the CAD is multiplied by; `None` finds the factor between known units that makes it fit.
+    pub cad_scale: Option<f64>,
+    /// Limits of the CAD reader.
+    pub reading: ReadOptions,
+    /// What is asked for.
+    pub settings: Settings,
+}
+
+impl Job {
+    /// A job with the default settings.
+    #[must_use]
+    pub fn new(mesh: PathBuf, cad: PathBuf, linkage: Option<PathBuf>, order: Order) -> Job {
+        let (reading, settings) = (ReadOptions::default(), Settings::new(order));
+        Job { mesh, cad, linkage, cad_scale: Some(1.0), reading, settings }
+    }
+
+    /// Reads the files and curves the mesh.
+    ///
+    /// # Errors
+    /// [`JobError`]; nothing was written then.
+    pub fn run(&self, observer: &mut dyn Observer) -> Result<Curved, JobError> {
+        let mut clock = Clock::new(observer);
+        clock.step(Step::Read);
+        if !formats::is_mesh(&self.mesh)? {
+            self.read_mesh()?; // says so before the CAD is waited for
+        }
+        let (linear, cad) = rayon::join(|| self.read_mesh(), || self.read_cad(self.cad_scale.unwrap_or(1.0)));
+        let (linear, cad) = (linear?, cad?);
+
+        clock.step(Step::Associate);
+        let associate = |cad: &Model| {
+            let linkage = self.read_linkage()?;
+            Associated::new(&linear, cad, linkage.as_ref(), &self.settings)
+        };
+        let associated = self.scaled(cad, associate)?.0;
+        drive(linear, associated, &self.settings, clock).map_err(|cause| self.error(cause))
+    }
+
+    /// What would lie on what: reads and associates, and goes no further.
+    ///
+    /// # Errors
+    /// [`JobError`].
+    pub fn association(&self) -> Result<Summary, JobError> {
+        let linear = self.read_mesh()?;
+        let boundary = Boundary::new(&linear);
+        let straight = self.settings.patches.straight(&linear, &boundary).map_err(|cause| self.error(cause.into()))?;
+        let classify = |cad: &Model| {
+            let choose = |candidates: &mut associate::Candidates| candidates.leave_straight(&boundary, &straight);
+            let linkage = self.read_linkage()?;
+            let offset = self.settings.max_offset;
+            Ok(associate::classify(linkage.as_ref(), &linear, &boundary, cad, offset, &choose)?)
+        };
+        let (own, cad) = self.scaled(self.read_cad(self.cad_scale.unwrap_or(1.0))?, classify)?;
+        let mut summary =
+            associate::summary(&own.source, &linear, &boundary, &cad, &own.candidates, own.inference.as_ref());
+        summary.notes = linear.notes.iter().cloned().chain(own.association.notes).collect();
+        Ok(summary)
+    }
+
+    fn read_mesh(&self) -> Result<Mesh, JobError> {
+        let linear = formats::read(&self.mesh)?;
+        check_mesh(&linear).map_err(|cause| self.error(cause))?;
+        Ok(linear)
+    }
+
+    fn read_cad(&self, scale: f64) -> Result<Model, JobError> {
+        let model = Model::read(&self.cad, &ReadOptions { scale, ..self.reading.clone() })?;
+        check_cad(&model).map_err(|cause| self.error(cause))?;
+        Ok(model)
+    }
+
+    fn read_linkage(&self) -> Result<Option<Linkage>, Error> {
+        let read = |path: &PathBuf| Linkage::read(path, &self.mesh);
+        Ok(self.linkage.as_ref().map(read).transpose()?)
+    }
+
+    /// What `associate` makes of the CAD, read again in another unit where the job asks for the unit that fits.
+    fn scaled<T>(&self, cad: Model, associate: impl Fn(&Model) -> Result<T, Error>) -> Result<(T, Model), JobError> {
+        let named = |cause| self.error(cause);
+        match associate(&cad) {
+            Ok(associated) => Ok((associated, cad)),
+            Err(Error::Associate(cause)) => match *cause {
+                AssociateError::Scale { factor, .. } if self.cad_scale.is_none() => {
+                    let cad = self.read_cad(factor)?;
+                    Ok((associate(&cad).map_err(named)?, cad))
+                }
+                cause => Err(named(Error::Associate(Box::new(cause)))),
+            },
+            Err(cause) => Err(named(cause)),
+        }
+    }
+
+    fn error(&self, cause: Error) -> JobError {
+        JobError::new(cause, &self.mesh, &self.cad)
+    }
+}

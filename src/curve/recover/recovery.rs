@@ -1,0 +1,189 @@
+//! The state of a recovery, and its way back.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::backtrack::{Fallback, backtrack};
+use super::off_cad::{OffCadFace, off_cad_faces};
+use super::spot::Spot;
+use crate::curve::level::{Below, Level};
+use crate::curve::perturb::perturb;
+use crate::curve::proof::Proof;
+use crate::curve::smoothing::smooth_level;
+use crate::element::Order;
+use crate::smooth::{self, Problem, Smoothed, Watch};
+
+/// Rounds in which the displacement is taken back; the fraction that stays is halved from one to the next, and none is left in the
+/// last.
+const ROUNDS: usize = 4;
+/// Sweeps of one smoothing in recovery.
+pub(super) const SWEEPS: usize = 60;
+
+/// What recovery led to.
+#[derive(Clone, Debug)]
+pub struct Recovered {
+    /// Wall faces that are off the CAD.
+    pub off_cad: Vec<OffCadFace>,
+    /// What is proven of the mesh.
+    pub proof: Proof,
+}
+
+/// A mesh on its way to a proof.
+pub(super) struct Recovery<'l, 'a> {
+    pub(super) level: &'l mut Level<'a>,
+    pub(super) smoothed: &'l mut Smoothed,
+    /// What is proven of the level as it is.
+    pub(super) proof: Proof,
+    /// Where walls go back to.
+    pub(super) fallback: Fallback,
+    pub(super) watch: &'l mut dyn Watch,
+}
+
+/// Makes a smoothed level valid; `proof` is that of the level as it is and does not hold, `below` the curved mesh of the order below,
+/// where there is one.
+pub fn recover(
+    level: &mut Level,
+    smoothed: &mut Smoothed,
+    below: Option<&Below>,
+    proof: Proof,
+    watch: &mut dyn Watch,
+) -> Recovered {
+    let fallback = fallback(level, below);
+    let order = fallback.order;
+    let mut recovery = Recovery { level, smoothed, proof, fallback, watch };
+    recovery.back();
+    let untouched = recovery.proof.holds() && recovery.level.wall.is_on_cad();
+    recovery.backtrack();
+    recovery.forward();
+    let Recovery { level, smoothed, proof, .. } = recovery;
+    if !untouched {
+        let problem = Problem::new(level.mesh(), level.straight());
+        smoothed.survey(&problem, &level.curved, level.case.settings.smoothing.survey_factor);
+    }
+    let off_cad = off_cad_faces(level, order, |n| level.wall.fraction(n));
+    Recovered { off_cad, proof }
+}
+
+/// The curved mesh of the order below where it is proven valid, otherwise the straight one.
+fn fallback(level: &mut Level, below: Option<&Below>) -> Fallback {
+    let straight = level.straight();
+    if let Some(below) = below {
+        let mut positions = below.raised(level.mesh());
+        positions.iter_mut().zip(straight).for_each(|(position, straight)| *position += *straight);
+        level.periodic.apply(&mut positions);
+        let curved = std::mem::replace(&mut level.curved, positions);
+        let holds = Proof::of(level).holds();
+        let positions = std::mem::replace(&mut level.curved, curved);
+        if holds {
+            return Fallback { order: below.order, positions };
+        }
+    }
+    Fallback { order: Order::LINEAR, positions: level.straight().to_vec() }
+}
+
+impl Recovery<'_, '_> {
+    /// Smoothing again, and taking back around what fails.
+    fn back(&mut self) {
+        let own = &self.level.case.settings.smoothing;
+        let settings = smooth::Settings {
+            survey_factor: 2 * own.survey_factor,
+            max_sweeps: SWEEPS.min(own.max_sweeps),
+            ..own.clone()
+        };
+        for round in 0..=ROUNDS {
+            let failing = self.proof.failing(self.level);
+            if failing.is_empty() || self.smoothed.stopped {
+                break; // a face may fail that no element stands on
+            }
+            if round > 0 {
+                self.take_back(round, &failing);
+            } else if self.proof.certificate.holds() {
+                continue; // smoothing does not look at folds of faces
+            }
+            self.smooth_again(&settings);
+        }
+    }
+
+    /// Smooths with the wall nodes held that are off the CAD, and judges what comes out.
+    pub(super) fn smooth_again(&mut self, settings: &smooth::Settings) {
+        let again = smooth_level(self.level, settings, None, self.watch);
+        self.smoothed.sweeps += again.sweeps;
+        self.smoothed.stopped |= again.stopped;
+        self.smoothed.costs = again.costs;
+        self.smoothed.end = again.end;
+        self.proof = Proof::of(self.level);
+    }
+
+    /// Takes the displacement back around the elements that fail.
+    fn take_back(&mut self, round: usize, failing: &[usize]) {
+        let keep = if round == ROUNDS { 0.0 } else { 0.5 };
+        let mut fractions = self.fractions_around(failing, round, keep);
+        self.level.periodic.least(&mut fractions);
+        let carried = (self.fallback.order == Order::LINEAR).then(|| self.carried());
+        let mut back = Vec::new();
+        for (n, fraction) in fractions.into_iter().enumerate().filter(|(_, fraction)| *fraction < 1.0) {
+            if self.level.on_curved_wall(n) {
+                self.level.wall.take_back(n, fraction, self.level.curved[n]);
+                back.push(n);
+            } else if carried.is_none() {
+                self.level.curved[n] = self.fallback.positions[n].lerp(self.level.curved[n], fraction);
+            }
+        }
+        self.follow(&back, carried);
+    }
+
+    /// [`backtrack`](super::backtrack), where the proof does not hold.
+    fn backtrack(&mut self) {
+        if self.proof.holds() {
+            return;
+        }
+        let curved = self.level.curved.clone();
+        let (fractions, proof) = backtrack(self.level, &self.fallback, self.proof.clone());
+        self.proof = proof;
+        for (n, &fraction) in fractions.iter().enumerate().filter(|(_, fraction)| **fraction < 1.0) {
+            if self.level.on_curved_wall(n) {
+                self.level.wall.take_back(n, fraction, curved[n]);
+                self.place(n); // its position stays the one that was proven, to the bit
+            }
+        }
+    }
+
+    /// Puts wall nodes where they are on their way; the others go with them from where the walls `carried` them before, or stay.
+    pub(super) fn follow(&mut self, nodes: &[usize], carried: Option<Vec<DVec3>>) {
+        for &n in nodes {
+            if let Some(position) = self.place(n) {
+                self.level.curved[n] = position;
+            }
+        }
+        if let Some(before) = carried {
+            let after = self.carried();
+            for n in 0..after.len() {
+                if !self.level.on_curved_wall(n) {
+                    self.level.curved[n] += after[n] - before[n];
+                }
+            }
+        }
+        self.level.periodic.apply(&mut self.level.curved);
+    }
+
+    /// Takes the displacement of a wall node from its way; its position there.
+    fn place(&mut self, node: usize) -> Option<DVec3> {
+        let straight = self.level.straight()[node];
+        self.level.wall.place(node, self.fallback.positions[node], straight)
+    }
+
+    /// Positions of all nodes as the walls' displacement carries them.
+    pub(super) fn carried(&self) -> Vec<DVec3> {
+        perturb(self.level, self.level.wall.displacements())
+    }
+
+    /// What each node keeps where `keep` is kept around some elements.
+    pub(super) fn fractions_around(&self, elements: &[usize], times: usize, keep: f64) -> Vec<f64> {
+        let straight = self.level.straight();
+        let on_wall = (0..straight.len()).filter(|&n| self.level.on_curved_wall(n));
+        let wall: Vec<DVec3> = on_wall.map(|n| straight[n]).collect();
+        let spots = Spot::around(elements, self.level.mesh(), &wall, times);
+        let fraction = |x: &DVec3| spots.iter().map(|spot| spot.fraction(*x, keep)).fold(1.0, f64::min);
+        straight.par_iter().map(fraction).collect()
+    }
+}

@@ -1,0 +1,56 @@
+//! What is asked of a curving.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use crate::associate::Choice;
+use crate::element::Order;
+use crate::smooth;
+
+/// What is asked of a curving, whether its mesh and CAD come from files or from memory.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Which patches are curved.
+    pub patches: Choice,
+    /// Order of the curved mesh, 2 to 4.
+    pub order: Order,
+    /// How far a linear node may be from its CAD entity; fraction of the diagonal of the mesh's bounding box. Default 1e-3.
+    pub max_offset: f64,
+    /// Keep all linear nodes where they are.
+    pub freeze_linear: bool,
+    /// Keep nodes on curved walls where projection put them.
+    pub freeze_walls: bool,
+    /// Begin at the order itself, not at the curved mesh of the order below.
+    pub direct: bool,
+    /// Layers of elements off curved walls that may be curved; `None` leaves it to the walls' displacement.
+    pub curve_layers: Option<NonZeroUsize>,
+    /// The smoother's settings.
+    pub smoothing: smooth::Settings,
+    /// A checkpoint file to go on from.
+    pub resume: Option<PathBuf>,
+}
+
+impl Settings {
+    /// The default settings for an order.
+    #[must_use]
+    pub fn new(order: Order) -> Settings {
+        Settings {
+            patches: Choice::All,
+            order,
+            max_offset: 1e-3,
+            freeze_linear: false,
+            freeze_walls: false,
+            direct: false,
+            curve_layers: None,
+            smoothing: smooth::Settings::default(),
+            resume: None,
+        }
+    }
+
+    /// Whatever a checkpoint depends on beside the mesh and its boundary.
+    pub(crate) fn fingerprint(&self) -> String {
+        let smooth::Settings { threshold, alpha, max_sweeps: _, survey_factor, engine } = &self.smoothing;
+        let held = (self.freeze_linear, self.freeze_walls, self.curve_layers, self.direct);
+        format!("{:?}", (threshold, alpha, survey_factor, engine, held))
+    }
+}
