@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use cad::{Model, ReadOptions};
 
+use super::driver::{Curved, drive};
 use super::error::{Error, JobError};
 use super::input::{Associated, check_cad, check_mesh};
 use super::observer::{Clock, Observer, Step};
 use super::settings::Settings;
-use super::{Curved, drive};
 use crate::associate::{self, AssociateError, Linkage, Summary};
 use crate::element::Order;
 use crate::formats;

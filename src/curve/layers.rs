@@ -12,7 +12,7 @@ use crate::mesh::{Mesh, NodeId};
 /// Keeps all elements straight that lie beyond so many layers of elements off the curved walls. The first layer are the
 /// elements that touch a curved wall, each next one those that touch a node of the layers before it. The nodes of the
 /// elements beyond get the classification [`Classification::Straight`], and the displacement ends before them
-/// ([`WallNode::beyond_layers`](super::level::WallNode::beyond_layers)).
+/// ([`WallNode::beyond_layers`](super::wall_state::WallNode::beyond_layers)).
 pub fn leave_straight_beyond(layers: NonZeroUsize, level: &mut Level) {
     let Case { boundary, association, .. } = level.case;
     let Level { elevated, periodic, wall, .. } = level;

@@ -30,7 +30,9 @@
 //! active element and again for each node, the inverse block (72), and 8 pairs of steps and gradient changes (48 each): 1.3 kB an
 //! active node at P2.
 
+pub mod below;
 pub mod checkpoint;
+mod driver;
 mod error;
 mod input;
 mod job;
@@ -45,127 +47,11 @@ pub mod recover;
 mod settings;
 mod smoothing;
 pub mod wall;
+pub mod wall_state;
 
-use cad::Model;
-use glam::DVec3;
-
+pub use driver::{Curved, curve};
 pub use error::{Error, JobError};
 pub use job::Job;
 pub use observer::{Observer, Step};
 pub use orders::LowerOrder;
 pub use settings::Settings;
-
-use crate::associate::{Association, Linkage};
-use crate::certify::{Certificate, Walls};
-use crate::mesh::elevate::Elevated;
-use crate::mesh::{Boundary, Mesh};
-use crate::smooth::{Progress, Smoothed};
-use input::Associated;
-use level::{Case, Level, Wall};
-use observer::Clock;
-use orders::{Continuation, Continued};
-use proof::Proof;
-use recover::{OffCadFace, Recovered, recover};
-
-/// A curved mesh and how it came about.
-#[derive(Debug)]
-pub struct Curved {
-    /// The mesh of order p, at its curved coordinates.
-    pub mesh: Mesh,
-    /// Straight coordinates of its nodes: the targets.
-    pub straight: Vec<DVec3>,
-    /// Linear nodes; they come first.
-    pub linear_nodes: usize,
-    /// What lies on which CAD group.
-    pub association: Association,
-    /// The linear mesh's boundary elements.
-    pub boundary: Boundary,
-    /// State of the boundary nodes, and counts of closest points.
-    pub wall: Wall,
-    /// What the smoother did at the orders below.
-    pub lower_orders: Vec<LowerOrder>,
-    /// What the smoother did.
-    pub smoothed: Smoothed,
-    /// What is proven of the mesh.
-    pub certificate: Certificate,
-    /// What is proven of the faces on the CAD.
-    pub walls: Walls,
-    /// Boundary faces that are off the CAD, so that the elements behind them are valid.
-    pub off_cad: Vec<OffCadFace>,
-    /// The CAD's unit, as its file names it.
-    pub cad_unit: String,
-    /// What the CAD was multiplied by.
-    pub cad_scale: f64,
-    /// Seconds a step, all orders together.
-    pub seconds: Vec<(Step, f64)>,
-}
-
-impl Curved {
-    /// Whether every element is proven valid and every face on the CAD free of folds.
-    #[must_use]
-    pub fn is_certified(&self) -> bool {
-        self.certificate.holds() && self.walls.hold()
-    }
-}
-
-/// Curves a linear mesh onto its CAD, all in memory. Which mesh faces lie on which CAD faces comes from the linkage; without one from
-/// the mesh's entity tags where they are the CAD's numbers, else from geometry.
-///
-/// # Errors
-/// [`Error`]: the mesh cannot be curved, or does not belong to the CAD.
-pub fn curve(
-    mesh: Mesh,
-    cad: &Model,
-    linkage: Option<&Linkage>,
-    settings: &Settings,
-    observer: &mut dyn Observer,
-) -> Result<Curved, Error> {
-    let mut clock = Clock::new(observer);
-    clock.step(Step::Read);
-    input::check_mesh(&mesh)?;
-    input::check_cad(cad)?;
-    clock.step(Step::Associate);
-    let associated = Associated::new(&mesh, cad, linkage, settings)?;
-    drive(mesh, associated, settings, clock)
-}
-
-/// The steps that follow the association.
-fn drive(mut linear: Mesh, associated: Associated, settings: &Settings, mut clock: Clock) -> Result<Curved, Error> {
-    let Associated { boundary, mut association, periodic, cad_unit, cad_scale } = associated;
-    linear.periodic.extend(periodic);
-    let case = Case { settings, boundary: &boundary, association: &association };
-    let Continued { mut level, mut smoothed, notes, below, lower_orders } =
-        Continuation::new(case, linear)?.run(&mut clock)?;
-
-    clock.step(Step::Certify);
-    let proof = Proof::of(&level);
-    let Recovered { proof, off_cad } = if proof.holds() {
-        Recovered { proof, off_cad: Vec::new() }
-    } else {
-        let below = below.mesh(clock.observer);
-        let mut watch = |progress: Progress| clock.observer.progress(&progress);
-        recover(&mut level, &mut smoothed, below.as_ref(), proof, &mut watch)
-    };
-
-    let Level { elevated: Elevated { mut mesh, linear_nodes, .. }, curved, wall, .. } = level;
-    let straight = std::mem::replace(&mut mesh.points, curved);
-    association.notes.extend(notes);
-    let Proof { certificate, walls } = proof;
-    let seconds = clock.finish();
-    Ok(Curved {
-        mesh,
-        straight,
-        linear_nodes,
-        association,
-        boundary,
-        wall,
-        lower_orders,
-        smoothed,
-        certificate,
-        walls,
-        off_cad,
-        cad_unit,
-        cad_scale,
-        seconds,
-    })
-}

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use crate::curve::checkpoint::Work;
+use super::checkpoint::Work;
 use crate::element::Order;
 use crate::smooth::{self, Checkpoint, Watch};
 
@@ -49,7 +49,7 @@ pub trait Observer {
     fn progress(&mut self, _progress: &smooth::Progress) -> bool {
         true
     }
-    /// A state from which [`Settings::resume`](super::Settings::resume) goes on.
+    /// A state from which [`Settings::resume`](super::settings::Settings::resume) goes on.
     fn checkpoint(&mut self, _work: &Work, _checkpoint: &Checkpoint) {}
 }
 

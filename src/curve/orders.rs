@@ -24,10 +24,11 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::below::Below;
 use super::checkpoint::{Found, Work};
 use super::error::Error;
 use super::layers::leave_straight_beyond;
-use super::level::{Below, Case, Level};
+use super::level::{Case, Level};
 use super::observer::{Clock, Observer, Relay, Step};
 use super::perturb::perturb;
 use super::proof::Proof;

@@ -53,7 +53,7 @@ use field::Field;
 pub use field::WallFace;
 use roots::Graph;
 
-/// Positions of all nodes: boundary nodes displaced as given ([`Wall::displacements`](super::level::Wall::displacements)), planes and
+/// Positions of all nodes: boundary nodes displaced as given ([`Wall::displacements`](super::wall_state::Wall::displacements)), planes and
 /// volume carried along.
 #[must_use]
 pub fn perturb(level: &Level, mut displacement: Vec<DVec3>) -> Vec<DVec3> {

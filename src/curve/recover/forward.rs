@@ -8,7 +8,7 @@
 //! elements that failed stay, and the others go on.
 
 use super::recovery::{Recovery, SWEEPS};
-use crate::curve::level::Wall;
+use crate::curve::wall_state::Wall;
 use crate::smooth;
 
 /// The first step, as a fraction of the whole way.

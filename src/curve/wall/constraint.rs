@@ -7,8 +7,9 @@ use glam::DVec3;
 use rustc_hash::FxHashSet;
 
 use crate::associate::Classification;
-use crate::curve::level::{Case, Wall};
+use crate::curve::level::Case;
 use crate::curve::periodic::PeriodicConstraint;
+use crate::curve::wall_state::Wall;
 use crate::mesh::NodeId;
 use crate::mesh::elevate::Elevated;
 use crate::smooth::{Anchor, Constraint, Freedom, Image};

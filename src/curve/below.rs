@@ -5,7 +5,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::Level;
+use super::level::Level;
 use crate::element::{Cell, Order, basis};
 use crate::mesh::{Mesh, NodeId};
 

@@ -1,16 +1,11 @@
 //! The mesh at one order on its way to the CAD: the one object that is handed from step to step.
 
-mod below;
-mod wall;
-
 use glam::DVec3;
 
-pub use below::Below;
-pub use wall::{OffCad, Wall, WallNode};
-
+use super::periodic::PeriodicConstraint;
+use super::settings::Settings;
+use super::wall_state::Wall;
 use crate::associate::{Association, Classification, Plane};
-use crate::curve::periodic::PeriodicConstraint;
-use crate::curve::settings::Settings;
 use crate::mesh::elevate::Elevated;
 use crate::mesh::{Boundary, Mesh, NodeId};
 
