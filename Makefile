@@ -18,7 +18,7 @@ SAGITTA := $(TARGET)/release/sagitta
 
 # The steps of a target run in their order, also under -j.
 .NOTPARALLEL:
-.PHONY: help setup setup-build build demo venv test lint unit bench oracle table engines bench-cases consumers figures doc
+.PHONY: help setup setup-build build demo venv test lint unit examples bench oracle table engines bench-cases consumers figures doc
 
 help: ## this list
 	@echo "sagitta curves linear viscous CFD meshes onto their CAD. Targets:"
@@ -49,7 +49,7 @@ else
 	@"$(SAGITTA_PYTHON)" -c 'import gmsh, meshio, numpy, scipy'
 endif
 
-test: setup venv lint unit ## everything that CI checks: format, clippy, docs, tests, doctests
+test: setup venv lint unit examples ## everything that CI checks: format, clippy, docs, tests, doctests, examples
 
 lint: setup-build ## format, clippy and rustdoc, without warnings
 	cargo fmt --all -- --check
@@ -64,6 +64,11 @@ unit: setup-build venv ## tests and doctests, by cargo-nextest where it is insta
 	    set -x; cargo test --workspace --lib --bins --tests --profile $(TEST_PROFILE); \
 	fi
 	SAGITTA_PYTHON="$(SAGITTA_PYTHON)" cargo test --workspace --doc --profile $(TEST_PROFILE)
+
+examples: setup-build ## run the programs in examples/
+	@for example in curve_in_memory check convert project; do \
+	    echo "== $$example"; cargo run --quiet --profile $(TEST_PROFILE) --example $$example; \
+	done
 
 bench: build ## benchmarks; minutes, not a test
 	cargo bench --bench curve
