@@ -18,7 +18,7 @@ SAGITTA := $(TARGET)/release/sagitta
 
 # The steps of a target run in their order, also under -j.
 .NOTPARALLEL:
-.PHONY: help setup setup-build build demo venv test lint unit examples bench oracle table engines bench-cases consumers figures doc
+.PHONY: help setup setup-build build demo venv test lint unit examples bench oracle table engines picture bench-cases consumers figures doc
 
 help: ## this list
 	@echo "sagitta curves linear viscous CFD meshes onto their CAD. Targets:"
@@ -83,6 +83,10 @@ table: build venv ## a table of the fixtures, curved and judged by other code; m
 
 engines: build venv ## the engines side by side on the weeble and the wing: fixtures/pictures/engines.png and a table; 4 minutes
 	"$(SAGITTA_PYTHON)" tests/pictures/engines.py $(SAGITTA) fixtures/pictures/engines.png
+
+picture: build venv ## the README's picture of the weeble: fixtures/pictures/weeble_p3.png
+	$(SAGITTA) curve fixtures/weeble/weeble.msh --cad fixtures/weeble/weeble.step --order 3 -o $(TARGET)/weeble_p3.vtu --quiet
+	"$(SAGITTA_PYTHON)" tests/pictures/weeble.py $(TARGET)/weeble_p3.vtu fixtures/pictures/weeble_p3.png
 
 consumers: setup build ## curved meshes given to Gmsh, meshio, MFEM, PyFR, PyHOPE, VTK and cgnscheck, and what they find; minutes
 	@WANTED=tests/consumers/requirements.txt VENV=.venv-consumers PYTHON="$(PYTHON)" .ci/venv
