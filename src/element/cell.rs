@@ -273,6 +273,14 @@ impl Cell {
         self.definition().faces
     }
 
+    /// Local corners of the sides, the cells of one dimension less that bound it: the faces of a volume, the edges of a face.
+    pub fn sides(self) -> impl Iterator<Item = &'static [u8]> {
+        let dimension = self.dimension();
+        let faces = self.faces().iter().filter(move |_| dimension == 3).map(|face| face.corners);
+        let edges = self.edges().iter().filter(move |_| dimension == 2).map(|edge| &edge[..]);
+        faces.chain(edges)
+    }
+
     /// Number of nodes of the element of order `p`.
     #[must_use]
     pub fn node_count(self, order: Order) -> usize {

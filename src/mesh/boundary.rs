@@ -2,8 +2,8 @@
 
 use rustc_hash::FxHashMap;
 
-use super::{EntityKey, Mesh, NodeId};
-use crate::element::{Cell, Order, canonical};
+use super::{EntityKey, FaceKey, Mesh, NodeId};
+use crate::element::{Cell, Order};
 
 /// A two-dimensional element of the mesh file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +18,7 @@ pub struct BoundaryFace {
     pub entity: EntityKey,
 }
 
-/// The two-dimensional elements of a mesh and their edges.
+/// The two-dimensional elements of a mesh, whatever its own dimension, and their edges.
 #[derive(Debug, Default)]
 pub struct Boundary {
     /// All of them, in file order.
@@ -29,7 +29,7 @@ pub struct Boundary {
     pub edges: Vec<[NodeId; 2]>,
     /// The faces at each edge.
     pub edge_faces: Vec<Vec<usize>>,
-    by_corners: FxHashMap<Vec<NodeId>, usize>,
+    by_corners: FxHashMap<FaceKey, usize>,
     by_ends: FxHashMap<[NodeId; 2], usize>,
 }
 
@@ -58,7 +58,7 @@ impl Boundary {
             });
             self.edge_faces[edge].push(index);
         }
-        self.by_corners.insert(key(corners), index);
+        self.by_corners.insert(FaceKey::new(corners), index);
         self.corners.push(corners.to_vec());
         self.faces.push(face);
     }
@@ -72,10 +72,17 @@ impl Boundary {
         &block.nodes[own.element * stride..][..stride]
     }
 
+    /// The file's number of a face of `mesh`.
+    #[must_use]
+    pub fn tag(&self, face: usize, mesh: &Mesh) -> u64 {
+        let own = &self.faces[face];
+        mesh.blocks[own.block].tags[own.element]
+    }
+
     /// The face with these corners, in whatever order.
     #[must_use]
     pub fn face(&self, corners: &[NodeId]) -> Option<usize> {
-        self.by_corners.get(&key(corners)).copied()
+        self.by_corners.get(&FaceKey::new(corners)).copied()
     }
 
     /// The edge between two nodes.
@@ -87,9 +94,4 @@ impl Boundary {
 
 fn sorted([a, b]: [NodeId; 2]) -> [NodeId; 2] {
     if a < b { [a, b] } else { [b, a] }
-}
-
-/// Corners in canonical order: the same whichever corner and direction a file begins with.
-fn key(corners: &[NodeId]) -> Vec<NodeId> {
-    canonical(corners)[..corners.len()].iter().map(|&q| corners[usize::from(q)]).collect()
 }

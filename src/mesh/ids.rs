@@ -36,15 +36,23 @@ macro_rules! id {
 }
 
 id!(
-    /// A node of a mesh: its place in `Mesh::points`.
+    /// A node of a mesh: its place in [`Mesh::points`](super::Mesh::points).
     NodeId, "nodes"
 );
 id!(
-    /// An element of the top dimension, counted over all blocks in file order.
+    /// An element: counted over all blocks of its dimension in file order. Where nothing else is said, a cell of the mesh
+    /// ([`Mesh::cells`](super::Mesh::cells)).
     ElementId, "elements"
 );
 
 impl NodeId {
     /// Filler beyond the corners of a key: no node has it, as a mesh of that many nodes has no room for elements.
     pub(crate) const NONE: NodeId = NodeId(u32::MAX);
+}
+
+impl ElementId {
+    /// The id of an element of a mesh, whose elements are known to be few enough.
+    pub(super) fn numbered(index: usize) -> ElementId {
+        ElementId(index as u32)
+    }
 }

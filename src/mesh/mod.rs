@@ -1,22 +1,32 @@
 //! Meshes of order 1 to 4, as they stand in files: points, blocks of elements, entities and their names.
 
+mod block;
 mod boundary;
 mod condition;
+mod elements;
 pub mod elevate;
 mod entity;
+mod face_key;
 mod ids;
+mod incidence;
+mod parts;
 pub mod periodic;
 mod zone;
 
 use glam::DVec3;
 
+pub use block::Block;
 pub use boundary::{Boundary, BoundaryFace};
 pub use condition::Condition;
+pub use elements::{Element, Elements};
 pub use entity::{Entity, EntityKey, Periodic, PhysicalName};
+pub use face_key::FaceKey;
 pub use ids::{ElementId, NodeId, TooMany};
+pub use incidence::Incidence;
+pub use parts::{Inconsistent, Parts};
 pub use zone::Zone;
 
-use crate::element::{Cell, Order};
+use crate::element::Order;
 
 /// A mesh of one polynomial order.
 ///
@@ -51,35 +61,156 @@ pub struct Mesh {
     pub notes: Vec<String>,
 }
 
-/// A run of elements of one cell on one entity.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Block {
-    /// Shape of all elements of the block.
-    pub cell: Cell,
-    /// The entity that the elements lie on.
-    pub entity: EntityKey,
-    /// Physical tags of the elements where the format gives them to elements rather than to entities (MSH 2.2).
-    pub physical_tags: Vec<i32>,
-    /// The file's element numbers.
-    pub tags: Vec<u64>,
-    /// Nodes, `cell.node_count(order)` an element, in internal (CGNS) order.
-    pub nodes: Vec<NodeId>,
-}
-
-impl Block {
-    /// Nodes of an element: the chunk length of [`Block::nodes`].
-    #[must_use]
-    pub fn stride(&self, order: Order) -> usize {
-        self.cell.node_count(order)
-    }
-
-    /// The elements' nodes, one slice an element.
-    pub fn elements(&self, order: Order) -> impl ExactSizeIterator<Item = &[NodeId]> {
-        self.nodes.chunks_exact(self.stride(order))
-    }
-}
-
 impl Mesh {
+    /// A mesh of parts that fit each other.
+    ///
+    /// # Errors
+    /// [`Inconsistent`] where a list is too long or too short, or a node number is beyond the points.
+    pub fn new(mut parts: Parts) -> Result<Mesh, Inconsistent> {
+        parts.complete()?;
+        Ok(Mesh {
+            order: parts.order,
+            points: parts.points,
+            node_tags: parts.node_tags,
+            node_entities: parts.node_entities,
+            node_parameters: parts.node_parameters,
+            blocks: parts.blocks,
+            entities: parts.entities,
+            physical_names: parts.physical_names,
+            periodic: parts.periodic,
+            conditions: parts.conditions,
+            zones: parts.zones,
+            notes: parts.notes,
+        })
+    }
+
+    /// What the mesh is made of.
+    #[must_use]
+    pub fn into_parts(self) -> Parts {
+        Parts {
+            order: self.order,
+            points: self.points,
+            node_tags: self.node_tags,
+            node_entities: self.node_entities,
+            node_parameters: self.node_parameters,
+            blocks: self.blocks,
+            entities: self.entities,
+            physical_names: self.physical_names,
+            periodic: self.periodic,
+            conditions: self.conditions,
+            zones: self.zones,
+            notes: self.notes,
+        }
+    }
+
+    /// Order of every element.
+    #[must_use]
+    pub fn order(&self) -> Order {
+        self.order
+    }
+
+    /// Coordinates of the nodes, in the file's unit.
+    #[must_use]
+    pub fn points(&self) -> &[DVec3] {
+        &self.points
+    }
+
+    /// Coordinates of the nodes, to be changed in place.
+    pub fn points_mut(&mut self) -> &mut [DVec3] {
+        &mut self.points
+    }
+
+    /// The file's number of each node; unique, positive, possibly sparse.
+    #[must_use]
+    pub fn node_tags(&self) -> &[u64] {
+        &self.node_tags
+    }
+
+    /// The entity of lowest dimension that each node is classified on (MSH 4.1); `None` where the file does not say.
+    #[must_use]
+    pub fn node_entities(&self) -> &[Option<EntityKey>] {
+        &self.node_entities
+    }
+
+    /// Parameters of nodes on their entity, where the file gives them: `(node, u, v)`; curves have `v = 0`.
+    #[must_use]
+    pub fn node_parameters(&self) -> &[(NodeId, [f64; 2])] {
+        &self.node_parameters
+    }
+
+    /// Elements of every dimension, in file order.
+    #[must_use]
+    pub fn blocks(&self) -> &[Block] {
+        &self.blocks
+    }
+
+    /// What the file says of its entities.
+    #[must_use]
+    pub fn entities(&self) -> &[Entity] {
+        &self.entities
+    }
+
+    /// Names of physical groups.
+    #[must_use]
+    pub fn physical_names(&self) -> &[PhysicalName] {
+        &self.physical_names
+    }
+
+    /// Pairs of entities whose nodes correspond.
+    #[must_use]
+    pub fn periodic(&self) -> &[Periodic] {
+        &self.periodic
+    }
+
+    /// Boundary conditions, where the file names them apart from the groups (CGNS, UGRID).
+    #[must_use]
+    pub fn conditions(&self) -> &[Condition] {
+        &self.conditions
+    }
+
+    /// Parts whose nodes the file numbers each from 1 (CGNS, PLOT3D); none where there is one such part.
+    #[must_use]
+    pub fn zones(&self) -> &[Zone] {
+        &self.zones
+    }
+
+    /// What reading changed or left out.
+    #[must_use]
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// The largest dimension of an element, 0 to 3: that of the mesh's cells.
+    #[must_use]
+    pub fn dimension(&self) -> usize {
+        let with_elements = self.blocks.iter().filter(|block| !block.tags.is_empty());
+        with_elements.map(|block| block.cell.dimension()).max().unwrap_or(0)
+    }
+
+    /// The elements of the mesh's own dimension: volumes, or faces where there are none.
+    #[must_use]
+    pub fn cells(&self) -> Elements<'_> {
+        Elements::new(self.order, self.cell_blocks())
+    }
+
+    /// The elements of one dimension less than the cells: those on the boundary, or between parts of the mesh.
+    #[must_use]
+    pub fn sides(&self) -> Elements<'_> {
+        Elements::new(self.order, self.side_blocks())
+    }
+
+    /// Blocks of cells.
+    pub fn cell_blocks(&self) -> impl Iterator<Item = &Block> + Clone {
+        let own = self.dimension();
+        self.blocks.iter().filter(move |block| block.cell.dimension() == own)
+    }
+
+    /// Blocks of sides.
+    pub fn side_blocks(&self) -> impl Iterator<Item = &Block> + Clone {
+        let own = self.dimension();
+        self.blocks.iter().filter(move |block| block.cell.dimension() + 1 == own)
+    }
+
     /// Number of elements of the given dimension.
     #[must_use]
     pub fn element_count(&self, dimension: usize) -> usize {
