@@ -214,9 +214,9 @@ fn report_and_check_tell_the_same() {
     let linear = fixture("weeble_hybrid", "msh");
     sagitta(args!["check", output, "--linear", linear, "--report", checked]).expect(0);
     let [report, checked] = [report, checked].map(|path| json(&path));
-    assert_eq!(report["schema"], "sagitta-report-1");
-    assert_eq!(report["schema"], sagitta::report::SCHEMA);
-    assert_eq!(checked["schema"], "sagitta-check-1");
+    assert_eq!(report["schema"], "sagitta-report-2");
+    assert_eq!(report["schema"], sagitta::report::curve::SCHEMA);
+    assert_eq!(checked["schema"], "sagitta-check-2");
     for key in ["order", "certified", "certificate"] {
         assert_eq!(report[key], checked[key], "{key}");
     }
@@ -232,7 +232,7 @@ fn report_and_check_tell_the_same() {
     assert!(number(&report, "/peak_memory") > 1e6 && number(&report, "/threads") >= 1.0);
     // The table for people has the same figures.
     for cell in report["cells"].as_array().unwrap() {
-        for key in ["/c_wcn_min", "/c_jac_min", "/certified_min"] {
+        for key in ["/c_wcn_min", "/c_jac_min", "/j_over_jc_min"] {
             let figure = format!("{:.4}", number(cell, key));
             assert!(text.contains(&figure), "{key} {figure} is not in:\n{text}");
         }
@@ -253,11 +253,11 @@ fn progress_goes_to_stderr_in_plain_lines() {
 }
 
 /// A mesh with a wall of no CAD face between planes that have theirs: the planes' edges curve, the wall does not follow,
-/// and the thin cells between can only be made valid by giving faces up.
+/// and the thin cells between can only be made valid by taking faces off the CAD.
 #[test]
 fn figures_are_those_of_the_mesh_that_is_written() {
     let place = Place::new();
-    let mesh = place.mesh("untied.msh", |mesh| {
+    let mesh = place.mesh("without_cad.msh", |mesh| {
         mesh.blocks.iter_mut().filter(|b| b.entity == EntityKey::new(2, 4)).for_each(|b| b.entity.tag = 104);
     });
     let report = place.dir.path().join("out/report.json");
@@ -265,13 +265,13 @@ fn figures_are_those_of_the_mesh_that_is_written() {
     arguments.extend(args!["--report", report]);
     let outcome = sagitta(&arguments).expect(3);
     let report = json(&report);
-    assert_ne!(report["given_up"], serde_json::json!([]));
-    assert_eq!(report["unlinked_faces"], 24);
-    assert!(outcome.stdout.contains("24 boundary faces are not tied to the CAD"), "{}", outcome.stdout);
-    assert!(outcome.stdout.contains("given up: "), "{}", outcome.stdout);
+    assert_ne!(report["off_cad"], serde_json::json!([]));
+    assert_eq!(report["faces_without_cad"], 24);
+    assert!(outcome.stdout.contains("24 boundary faces are not associated with the CAD"), "{}", outcome.stdout);
+    assert!(outcome.stdout.contains("off the CAD: "), "{}", outcome.stdout);
     sagitta(args!["check", place.output(), "--linear", mesh]).expect(0);
     for cell in report["cells"].as_array().unwrap() {
-        let [sampled, proven] = ["/c_jac_min", "/certified_min"].map(|key| number(cell, key));
+        let [sampled, proven] = ["/c_jac_min", "/j_over_jc_min"].map(|key| number(cell, key));
         assert!(sampled >= 1.0 || sampled >= proven, "C_JAC sampled {sampled}, J/Jc proven {proven}: {cell}");
         assert!(number(cell, "/c_wcn_min") > 0.0, "no element is inverted any more: {cell}");
     }

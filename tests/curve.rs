@@ -98,12 +98,12 @@ impl Case {
     fn own_report(&self, report: &Value) {
         let title = self.title();
         assert_eq!(report["certified"], true, "{title}: {report:#}");
-        assert_eq!(report["given_up"], serde_json::json!([]), "{title}");
-        assert_eq!(report["unlinked_faces"], 0, "{title}: {:#}", report["notes"]);
+        assert_eq!(report["off_cad"], serde_json::json!([]), "{title}");
+        assert_eq!(report["faces_without_cad"], 0, "{title}: {:#}", report["notes"]);
         for cell in report["cells"].as_array().unwrap() {
             assert_eq!(cell["count"], cell["valid"], "{title}: {cell}");
             self.floors_hold([number(cell, "/c_wcn_min"), number(cell, "/c_jac_min")], "own report");
-            let (proven, sampled) = (number(cell, "/certified_min"), number(cell, "/c_jac_min"));
+            let (proven, sampled) = (number(cell, "/j_over_jc_min"), number(cell, "/c_jac_min"));
             let told = format!("{title}: {}: J/Jc proven {proven}, C_JAC sampled {sampled}", cell["cell"]);
             // C_JAC is capped at 1; below that, no sample lies under what is proven.
             assert!(proven > 0.0 && (sampled >= 1.0 || proven <= sampled + 1e-12), "{told}");

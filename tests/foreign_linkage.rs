@@ -126,7 +126,7 @@ fn the_m6_is_inferred() {
     for patch in told["patches"].as_array().unwrap() {
         // Gmsh numbers the faces of a BREP file as this program does.
         let face = patch["entity"].as_str().unwrap().replace("surface ", "face:");
-        assert_eq!(patch["on"][&face], patch["faces"], "{patch:#}");
+        assert_eq!(patch["cad_faces"][&face], patch["faces"], "{patch:#}");
     }
     sagitta(args!["validate", output, "--mesh", m6("msh"), "--cad", m6("egads"), "--strict"]).expect(0);
 }

@@ -235,7 +235,7 @@ fn sheets_by_name_are_used() {
     assert!(told.contains("\"nothing\" by name"), "{told}");
     let patches = &json(&report)["patches"];
     assert!(
-        patches.as_array().unwrap().iter().all(|patch| patch["surfaces"].as_array().unwrap().len() == 1),
+        patches.as_array().unwrap().iter().all(|patch| patch["cad_groups"].as_array().unwrap().len() == 1),
         "{patches:#}"
     );
     let validated = sagitta(args!["validate", linkage, "--mesh", file, "--cad", cad]).expect(0).stdout;
@@ -313,7 +313,7 @@ fn linear_nodes_off_the_cad() {
         let farthest = |list: &serde_json::Value, key: &str| {
             list.as_array().unwrap().iter().map(|item| item[key].as_f64().unwrap()).fold(0.0, f64::max)
         };
-        let told = farthest(&report["patches"], "farthest");
+        let told = farthest(&report["patches"], "cad_distance_max");
         assert!((least..most).contains(&told), "{name}: {told:e}");
         let [curved, figures] = ["curved.msh", "figures.json"].map(|file| dir.path().join(file));
         let cad = case.with_extension("step");
@@ -333,11 +333,11 @@ fn linear_nodes_off_the_cad() {
             figures
         ];
         sagitta(arguments).expect(0);
-        let offset = farthest(&json(&figures)["patches"], "largest_offset");
+        let offset = farthest(&json(&figures)["patches"], "node_move_max");
         assert!((offset / told - 1.0).abs() < 1e-3, "{name}: {offset:e} {told:e}");
         let validated = sagitta(args!["validate", output, "--mesh", file, "--cad", cad, "--json"]).expect(0).stdout;
         let validated: serde_json::Value = serde_json::from_str(&validated).unwrap();
-        assert!((farthest(&validated["sheets"], "farthest") / told - 1.0).abs() < 1e-3, "{name}");
+        assert!((farthest(&validated["sheets"], "cad_distance_max") / told - 1.0).abs() < 1e-3, "{name}");
     }
 }
 
@@ -368,7 +368,12 @@ fn patches_can_be_chosen_and_the_association_shown() {
         sagitta(arguments.into_iter().chain(more.iter().map(std::ffi::OsString::from)))
     };
     let tied = |report: &serde_json::Value| -> Vec<bool> {
-        report["patches"].as_array().unwrap().iter().map(|patch| !patch["on"].as_object().unwrap().is_empty()).collect()
+        report["patches"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|patch| !patch["cad_faces"].as_object().unwrap().is_empty())
+            .collect()
     };
     for (options, wanted) in [
         (&[][..], [true; 4]),

@@ -127,7 +127,7 @@ fn wavy_sides_of_a_block_by_the_linkage_file() {
     // Both sides lie on their own CAD face.
     let report = json(&report);
     for patch in report["patches"].as_array().unwrap() {
-        let farthest = patch["farthest"].as_f64().unwrap();
+        let farthest = patch["cad_distance_max"].as_f64().unwrap();
         assert!(farthest < 1e-2, "{patch:#}");
     }
     // Without the linkage file nothing tells that the sides are a pair.

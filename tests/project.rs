@@ -52,10 +52,10 @@ fn feet_are_written_and_counted() {
         assert!((foot[0] - 0.5 * x[0] / radius).abs() < 1e-12 && (foot[2] - x[2]).abs() < 1e-12, "{row:?}");
     }
     let report = json(&report);
-    assert_eq!(report["schema"], "sagitta-feet-1");
+    assert_eq!(report["schema"], "sagitta-feet-2");
     assert_eq!([number(&report, "/points"), number(&report, "/proven"), number(&report, "/unproven")], [4.0, 4.0, 0.0]);
-    assert_eq!(report["ends"], json!({"interior": 4}));
-    assert_eq!(report["feet"], json!({wall: 4}));
+    assert_eq!(report["feet_by_end"], json!({"interior": 4}));
+    assert_eq!(report["feet_by_entity"], json!({wall: 4}));
     assert_eq!(names_in(dir.path()), ["feet.csv", "points.csv", "report.json"]);
 }
 

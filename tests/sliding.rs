@@ -18,7 +18,7 @@ fn curve(order: &str, more: &[&str]) -> (f64, f64) {
     let report = json(&report);
     let patches = report["patches"].as_array().unwrap();
     let dish = patches.iter().find(|patch| patch["names"][0] == "dish").unwrap();
-    (number(&report, "/smoothing/end/c_jac"), number(dish, "/farthest"))
+    (number(&report, "/smoothing/end/c_jac"), number(dish, "/cad_distance_max"))
 }
 
 /// What the fit of the wall gained at P3 (a tenth of the distance, if the wall is frozen) a slide may cost, but not what P3 gains on P2.

@@ -144,7 +144,7 @@ fn distance(dir: &Path, cad: &str, n: usize, order: Order) -> f64 {
     let (p, cad) = (order.get().to_string(), fixture("sphere_shell", cad));
     sagitta(args!["curve", linear, "--cad", cad, "--order", p, "-o", curved, "--report", report, "-q"]).expect(0);
     let told = json(&report);
-    assert_eq!(told["unlinked_faces"], 0, "{:#}", told["notes"]);
+    assert_eq!(told["faces_without_cad"], 0, "{:#}", told["notes"]);
     let mesh = formats::read(&curved).unwrap();
     assert_eq!(mesh.order, order);
     off_the_sphere(&mesh)

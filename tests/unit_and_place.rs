@@ -30,13 +30,13 @@ fn curved(place: &Place, input: Input) -> (Value, Mesh) {
     sagitta(arguments).expect(0);
     let told = json(&report);
     assert_eq!(told["certified"], true);
-    assert_eq!(told["unlinked_faces"], 0, "{:#}", told["notes"]);
+    assert_eq!(told["faces_without_cad"], 0, "{:#}", told["notes"]);
     (told, formats::read(&place.output()).unwrap())
 }
 
 /// The farthest point of the walls from the CAD.
 fn farthest(report: &Value) -> f64 {
-    report["patches"].as_array().unwrap().iter().map(|patch| number(patch, "/farthest")).fold(0.0, f64::max)
+    report["patches"].as_array().unwrap().iter().map(|patch| number(patch, "/cad_distance_max")).fold(0.0, f64::max)
 }
 
 #[test]
@@ -176,7 +176,7 @@ fn a_node_too_far_from_the_cad_is_named() {
     place.refuses(Input::mesh(&mesh), &["moved.msh", "surface 2", &format!("node {tag}"), "5.000e-2", "--max-offset"]);
     place.refuses(Input::mesh(&mesh).with(&["--freeze-linear"]), &["moved.msh", "--max-offset"]);
     let (report, curved) = curved(&place, Input::mesh(&mesh).with(&["--max-offset", "0.01"]));
-    assert!((number(patch(&report, OUTER.1), "/largest_offset") - 0.05).abs() < 1e-6, "{report:#}");
+    assert!((number(patch(&report, OUTER.1), "/node_move_max") - 0.05).abs() < 1e-6, "{report:#}");
     assert!((place_of(&curved, tag).truncate().length() - OUTER.0).abs() < 1e-9);
 }
 
@@ -185,7 +185,7 @@ fn a_node_slightly_off_is_projected_or_frozen() {
     let place = Place::new();
     let (mesh, tag, from) = moved(&place, 0.004);
     let (report, projected) = curved(&place, Input::mesh(&mesh));
-    let offset = number(patch(&report, OUTER.1), "/largest_offset");
+    let offset = number(patch(&report, OUTER.1), "/node_move_max");
     assert!((offset - 0.004).abs() < 1e-6, "reported {offset}");
     let to = place_of(&projected, tag);
     assert!(
@@ -194,11 +194,11 @@ fn a_node_slightly_off_is_projected_or_frozen() {
     );
     let others = |p: &&Value| p["entity"] != "surface 2";
     for other in report["patches"].as_array().unwrap().iter().filter(others) {
-        assert!(number(other, "/largest_offset") < 1e-9, "{other}");
+        assert!(number(other, "/node_move_max") < 1e-9, "{other}");
     }
 
     let (report, frozen) = curved(&place, Input::mesh(&mesh).with(&["--freeze-linear"]));
-    assert_eq!(number(patch(&report, OUTER.1), "/largest_offset"), 0.0);
+    assert_eq!(number(patch(&report, OUTER.1), "/node_move_max"), 0.0);
     assert!(farthest(&report) > 0.0039, "the farthest point is the frozen node: {}", farthest(&report));
     let linear = formats::read(&mesh).unwrap();
     unmoved(&linear, &frozen, "--freeze-linear");

@@ -105,9 +105,9 @@ fn a_file_of_two_blocks_is_linked_block_by_block_and_curved() {
     let report = ring.dir.path().join("report.json");
     ring.curve(&ring.linkage, &args!["--report", report]).expect(0);
     let report = json(&report);
-    assert_eq!((&report["certified"], &report["unlinked_faces"]), (&true.into(), &0.into()), "{report:#}");
+    assert_eq!((&report["certified"], &report["faces_without_cad"]), (&true.into(), &0.into()), "{report:#}");
     for patch in report["patches"].as_array().unwrap() {
-        assert!(number(patch, "/farthest") < 1e-2, "{patch:#}");
+        assert!(number(patch, "/cad_distance_max") < 1e-2, "{patch:#}");
     }
     // A zone by its name alone is the same zone.
     let (short, _) = ring.spoilt(|text| text.replace("/Base/blk-", "blk-"));

@@ -1,7 +1,6 @@
-//! An association in figures, patch by patch: what `sagitta link` and `sagitta curve --dry-run` tell.
+//! An association in figures, patch by patch: what `sagitta link` and `sagitta curve --dry-run` report.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
 
 use cad::{EntityId, Group, Model};
 use glam::DVec3;
@@ -10,19 +9,21 @@ use serde::Serialize;
 use super::{Candidates, Doubt, Inference};
 use crate::mesh::{Boundary, EntityKey, Mesh, NodeId};
 
-/// Undecided items that are listed as text.
-const LISTED: usize = 10;
+/// Name and version of the JSON document.
+pub(super) const SCHEMA: &str = "sagitta-association-2";
 
-/// What is tied to what.
+/// Which mesh entities lie on which CAD entities.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
+    /// [`SCHEMA`].
+    pub schema: &'static str,
     /// Where the association comes from.
     pub source: String,
     /// By boundary entity of the mesh.
     pub patches: Vec<Patch>,
-    /// Mesh edges that are tied to CAD edges.
+    /// Mesh edges that are associated with CAD edges.
     pub edges: usize,
-    /// Nodes that are tied to CAD vertices.
+    /// Nodes that are associated with CAD vertices.
     pub points: usize,
     /// What could not be decided; faces whose points are not on the CAD at all are counted in their patch only.
     pub undecided: Vec<Undecided>,
@@ -40,13 +41,13 @@ pub struct Patch {
     /// Its faces.
     pub faces: usize,
     /// CAD faces, or groups of them, with the number of mesh faces on each.
-    pub on: BTreeMap<String, usize>,
+    pub cad_faces: BTreeMap<String, usize>,
     /// Faces that could not be decided.
     pub undecided: usize,
     /// Faces of which no point is on the CAD.
     pub off_cad: usize,
-    /// The largest distance of a tied node from its CAD faces.
-    pub farthest: f64,
+    /// The largest distance of an associated node from its CAD faces.
+    pub cad_distance_max: f64,
 }
 
 /// A face or edge that is left out.
@@ -57,7 +58,7 @@ pub struct Undecided {
     /// The numbers of its nodes.
     pub nodes: Vec<u64>,
     /// Its middle.
-    pub place: [f64; 3],
+    pub position: [f64; 3],
     /// Why.
     pub reason: String,
 }
@@ -78,10 +79,10 @@ pub fn summary(
             entity: face.entity.to_string(),
             names: mesh.names_of(face.entity),
             faces: 0,
-            on: BTreeMap::new(),
+            cad_faces: BTreeMap::new(),
             undecided: 0,
             off_cad: 0,
-            farthest: 0.0,
+            cad_distance_max: 0.0,
         });
         patch.faces += 1;
     }
@@ -90,12 +91,12 @@ pub fn summary(
         let farthest = farthest_by_patch(mesh, boundary, model, &sheet.entities, &sheet.items);
         for &face in &sheet.items {
             if let Some(patch) = patches.get_mut(&boundary.faces[face].entity) {
-                *patch.on.entry(target.clone()).or_default() += 1;
+                *patch.cad_faces.entry(target.clone()).or_default() += 1;
             }
         }
         for (entity, distance) in farthest {
             if let Some(patch) = patches.get_mut(&entity) {
-                patch.farthest = patch.farthest.max(distance);
+                patch.cad_distance_max = patch.cad_distance_max.max(distance);
             }
         }
     }
@@ -113,6 +114,7 @@ pub fn summary(
         undecided.push(Undecided::new("edge", mesh, &boundary.edges[*edge], doubt));
     }
     Summary {
+        schema: SCHEMA,
         source: source.to_owned(),
         patches: patches.into_values().collect(),
         edges: candidates.strings.iter().filter(|s| !s.entities.is_empty()).map(|s| s.items.len()).sum(),
@@ -139,8 +141,8 @@ fn farthest_by_patch(
         nodes.entry(boundary.faces[face].entity).or_default().extend(&boundary.corners[face]);
     }
     for (entity, nodes) in nodes {
-        let places: Vec<DVec3> = nodes.iter().map(|n| mesh.points[n.index()]).collect();
-        let feet = group.closest_batch(&places, &mut []);
+        let positions: Vec<DVec3> = nodes.iter().map(|n| mesh.points[n.index()]).collect();
+        let feet = group.closest_batch(&positions, &mut []);
         farthest.insert(entity, feet.iter().map(|foot| foot.distance).fold(0.0, f64::max));
     }
     farthest
@@ -151,34 +153,8 @@ impl Undecided {
         Undecided {
             kind,
             nodes: nodes.iter().map(|n| mesh.node_tags[n.index()]).collect(),
-            place: (mesh.points_of(nodes).sum::<DVec3>() / nodes.len() as f64).to_array(),
+            position: (mesh.points_of(nodes).sum::<DVec3>() / nodes.len() as f64).to_array(),
             reason: doubt.to_string(),
         }
-    }
-}
-
-impl fmt::Display for Summary {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "association by {}", self.source)?;
-        let heads = ["patch", "faces", "undecided", "not on CAD", "farthest", "on"];
-        let [patch, faces, undecided, off, farthest, on] = heads;
-        writeln!(f, "{patch:<24}{faces:>9}{undecided:>11}{off:>12}{farthest:>11}  {on}")?;
-        for p in &self.patches {
-            let name =
-                if p.names.is_empty() { p.entity.clone() } else { format!("{} {}", p.names.join(","), p.entity) };
-            let on: Vec<String> = p.on.iter().map(|(target, count)| format!("{target} ({count})")).collect();
-            let on = if on.is_empty() { "not tied".to_owned() } else { on.join("; ") };
-            writeln!(f, "{name:<24}{:>9}{:>11}{:>12}{:>11.2e}  {on}", p.faces, p.undecided, p.off_cad, p.farthest)?;
-        }
-        write!(f, "{} mesh edges on CAD edges, {} nodes at CAD vertices", self.edges, self.points)?;
-        for item in self.undecided.iter().take(LISTED) {
-            let [x, y, z] = item.place;
-            write!(f, "\nundecided: {} {:?} near ({x:.6}, {y:.6}, {z:.6}): {}", item.kind, item.nodes, item.reason)?;
-        }
-        let more = self.undecided.len().saturating_sub(LISTED);
-        if more > 0 {
-            write!(f, "\nundecided: {more} more (--report lists them)")?;
-        }
-        self.notes.iter().try_for_each(|note| write!(f, "\nnote: {note}"))
     }
 }

@@ -22,7 +22,8 @@ pub struct Certificate {
     pub tallies: [Tally; 4],
     /// All elements that are not proven valid, in their order.
     pub failures: Vec<Judged>,
-    /// For every element, in order, a lower bound of its `J / J_c`; minus infinity where `J_c` is not positive.
+    /// For every element, in order, a lower bound of its `J / J_c`; minus infinity where `J_c` is not positive. The least
+    /// where all are positive is `relative.lower`.
     pub minima: Vec<f64>,
     /// Bounds of the smallest `J / J_c` of all elements whose `J_c` is positive.
     pub relative: Bounds,
@@ -207,6 +208,12 @@ impl Summary {
             judged.place = bench.with(elements, judged.element, |_, shape| place(shape, &judged.finding));
         };
         self.failures.iter_mut().for_each(&mut place);
+        for (element, lower) in self.relative.lower_bounds() {
+            self.minima[element] = lower;
+        }
+        for failure in &mut self.failures {
+            failure.finding.relative.lower = self.minima[failure.element];
+        }
         let (relative, mut worst_relative) = self.relative.end();
         let (scaled, mut worst_scaled) = self.scaled.end();
         worst_relative.iter_mut().chain(&mut worst_scaled).for_each(place);

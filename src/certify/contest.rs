@@ -129,6 +129,11 @@ impl Contest {
         self.sort();
     }
 
+    /// The elements that were sharpened, with the lower bounds of their values.
+    pub(super) fn lower_bounds(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.entries.iter().map(|(bounds, judged)| (judged.element, bounds.lower))
+    }
+
     /// Bounds of the smallest value, and the worst elements.
     pub(super) fn end(self) -> (Bounds, Vec<Judged>) {
         let lower = self.entries.first().map_or(f64::INFINITY, |(bounds, _)| bounds.lower).min(self.left_out);

@@ -79,6 +79,8 @@ fn a_meshes_minimum_is_that_of_its_elements() {
             "{bounds:?} {least}"
         );
     }
+    let of_elements = certificate.minima.iter().copied().fold(f64::INFINITY, f64::min);
+    assert_eq!(of_elements.to_bits(), certificate.relative.lower.to_bits(), "one proven minimum");
     assert_eq!(certificate.worst_relative.len(), 10);
     assert!(certificate.worst_relative[0].finding.relative.lower >= certificate.relative.lower);
     assert!(certificate.worst_relative.iter().all(|judged| judged.place.is_finite()));

@@ -43,7 +43,7 @@ use crate::mesh::elevate::elevate;
 use crate::smooth::{Engine, Progress, Smoothed, Summary};
 
 /// What smoothing did at an order below the one asked for.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LowerOrder {
     /// The order.
     pub order: Order,

@@ -8,7 +8,6 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use serde::Serialize;
 
 use crate::element::{Cell, basis, edge_nodes};
 use crate::mesh::{Block, Mesh, NodeId};
@@ -21,7 +20,7 @@ const SHARP: f64 = std::f64::consts::FRAC_1_SQRT_2;
 const LONGEST: usize = 1000;
 
 /// Angles at the inner nodes of grid lines, in degrees.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GridLineAngles {
     /// Number of grid lines with at least one inner node.
     pub lines: usize,

@@ -1,39 +1,50 @@
-//! The certificate of a mesh, in the numbers of its file.
-
-use std::fmt;
+//! The certificate of a mesh, as reports have it.
 
 use serde::Serialize;
 
-use crate::certify::{Certificate, Judged, Verdict};
+use super::Bounds;
+use crate::certify::{self, Certificate, Judged};
 use crate::mesh::Mesh;
 
-/// Elements listed as worst, and failures listed in words.
+/// Elements listed as worst.
 const LISTED: usize = 10;
 
 /// The certificate of the whole mesh.
 #[derive(Clone, Debug, Serialize)]
 pub struct CertificateReport {
-    /// Smallest J / J_c: proven lower bound, and a value that is attained.
-    pub relative: [f64; 2],
-    /// Smallest scaled Jacobian, likewise.
-    pub scaled: [f64; 2],
-    /// The elements with the smallest J / J_c, worst first, and all that are not proven valid.
-    pub worst: Vec<WorstElement>,
+    /// The smallest J / J_c of all elements whose J_c is positive.
+    pub j_over_jc: Bounds,
+    /// The smallest scaled Jacobian: smallest over largest determinant of an element.
+    pub scaled_jacobian: Bounds,
+    /// All elements that are not proven valid, and the ten valid ones with the smallest J / J_c, worst first.
+    pub worst: Vec<ElementReport>,
 }
 
 /// An element to look at.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct WorstElement {
+pub struct ElementReport {
     /// Its number in the file.
     pub element: u64,
-    /// Its kind.
+    /// `tet`, `pyramid`, `prism` or `hex`.
     pub cell: &'static str,
-    /// `valid`, `invalid` or `undecided`.
-    pub verdict: &'static str,
-    /// Bounds of its smallest J / J_c.
-    pub relative: [f64; 2],
+    /// What is proven of it.
+    pub verdict: Verdict,
+    /// Its smallest J / J_c.
+    pub j_over_jc: Bounds,
     /// Where its smallest known Jacobian is.
-    pub place: [f64; 3],
+    pub position: [f64; 3],
+}
+
+/// What is proven of an element.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// Its Jacobian is positive everywhere.
+    Valid,
+    /// Its Jacobian is not positive somewhere.
+    Invalid,
+    /// Neither.
+    Undecided,
 }
 
 impl CertificateReport {
@@ -41,37 +52,51 @@ impl CertificateReport {
     #[must_use]
     pub fn new(mesh: &Mesh, certificate: &Certificate) -> CertificateReport {
         let tags: Vec<u64> = mesh.blocks_of(3).flat_map(|(_, block)| block.tags.iter().copied()).collect();
-        let worst = |judged: &Judged| WorstElement {
-            element: tags[judged.element],
-            cell: judged.cell.name(),
-            verdict: match judged.finding.verdict {
-                Verdict::Valid => "valid",
-                Verdict::Invalid { .. } => "invalid",
-                Verdict::Undecided => "undecided",
-            },
-            relative: [judged.finding.relative.lower, judged.finding.relative.upper],
-            place: judged.place.to_array(),
-        };
+        let element = |judged: &Judged| ElementReport::new(tags[judged.element], judged);
         let weakest = certificate.worst_relative.iter().filter(|j| j.finding.verdict.is_valid()).take(LISTED);
         CertificateReport {
-            relative: [certificate.relative.lower, certificate.relative.upper],
-            scaled: [certificate.scaled.lower, certificate.scaled.upper],
-            worst: certificate.failures.iter().chain(weakest).map(worst).collect(),
+            j_over_jc: certificate.relative.into(),
+            scaled_jacobian: certificate.scaled.into(),
+            worst: certificate.failures.iter().chain(weakest).map(element).collect(),
         }
     }
 
-    /// The verdict in words.
-    pub(super) fn verdict(&self, certified: bool, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [lower, upper] = self.relative;
-        if certified {
-            return write!(f, "certified: every element valid, J/Jc >= {lower:.4} everywhere (attained: {upper:.4})");
+    /// The elements that are not proven valid.
+    pub fn failures(&self) -> impl Iterator<Item = &ElementReport> {
+        self.worst.iter().filter(|element| element.verdict != Verdict::Valid)
+    }
+}
+
+impl ElementReport {
+    fn new(number: u64, judged: &Judged) -> ElementReport {
+        ElementReport {
+            element: number,
+            cell: judged.cell.name(),
+            verdict: judged.finding.verdict.into(),
+            j_over_jc: judged.finding.relative.into(),
+            position: judged.place.to_array(),
         }
-        let failures = || self.worst.iter().filter(|w| w.verdict != "valid");
-        write!(f, "NOT certified: {} elements", failures().count())?;
-        for w in failures().take(LISTED) {
-            let [x, y, z] = w.place;
-            write!(f, "\n  {} {} {} near ({x:.6}, {y:.6}, {z:.6})", w.verdict, w.cell, w.element)?;
+    }
+}
+
+impl From<certify::Verdict> for Verdict {
+    fn from(verdict: certify::Verdict) -> Verdict {
+        match verdict {
+            certify::Verdict::Valid => Verdict::Valid,
+            certify::Verdict::Invalid { .. } => Verdict::Invalid,
+            certify::Verdict::Undecided => Verdict::Undecided,
         }
-        Ok(())
+    }
+}
+
+impl Verdict {
+    /// The word for it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Verdict::Valid => "valid",
+            Verdict::Invalid => "invalid",
+            Verdict::Undecided => "undecided",
+        }
     }
 }

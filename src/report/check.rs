@@ -1,23 +1,24 @@
-//! What is told of a mesh that was only certified.
+//! The report of a mesh that was only certified.
 
-use std::fmt;
 use std::path::Path;
 
 use serde::Serialize;
 
-use super::CertificateReport;
-use crate::certify::Certificate;
+use super::certificate::CertificateReport;
+use crate::certify::{Certificate, Tally};
 use crate::element::Cell;
 use crate::mesh::Mesh;
 
 /// Name and version of the JSON document.
-const SCHEMA: &str = "sagitta-check-1";
+pub const SCHEMA: &str = "sagitta-check-2";
 
 /// The certificate of a mesh file.
 #[derive(Clone, Debug, Serialize)]
 pub struct CheckReport {
-    /// `sagitta-check-1`.
+    /// [`SCHEMA`].
     pub schema: &'static str,
+    /// Version of the program.
+    pub version: &'static str,
     /// The file.
     pub mesh: String,
     /// Polynomial order.
@@ -46,7 +47,7 @@ impl CheckReport {
     #[must_use]
     pub fn new(path: &Path, mesh: &Mesh, certificate: &Certificate) -> CheckReport {
         let tallies = certificate.tallies.iter().zip(Cell::VOLUME).filter(|(tally, _)| tally.elements > 0);
-        let counts = |(tally, cell): (&crate::certify::Tally, Cell)| CellCounts {
+        let counts = |(tally, cell): (&Tally, Cell)| CellCounts {
             cell: cell.name(),
             count: tally.elements,
             valid: tally.valid,
@@ -55,24 +56,12 @@ impl CheckReport {
         };
         CheckReport {
             schema: SCHEMA,
+            version: env!("CARGO_PKG_VERSION"),
             mesh: path.display().to_string(),
             order: mesh.order.into(),
             certified: certificate.holds(),
             cells: tallies.map(counts).collect(),
             certificate: CertificateReport::new(mesh, certificate),
         }
-    }
-}
-
-impl fmt::Display for CheckReport {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}: P{}", self.mesh, self.order)?;
-        for c in &self.cells {
-            let (cell, count) = (c.cell, c.count);
-            writeln!(f, "  {count} {cell}: {} valid, {} invalid, {} undecided", c.valid, c.invalid, c.undecided)?;
-        }
-        let [lower, upper] = self.certificate.scaled;
-        writeln!(f, "  smallest scaled Jacobian between {lower:.4} and {upper:.4}")?;
-        self.certificate.verdict(self.certified, f)
     }
 }

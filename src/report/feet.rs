@@ -1,18 +1,17 @@
-//! What is told of projected points.
+//! The report of projected points, and of the CAD that they were projected on.
 
 use std::collections::BTreeMap;
-use std::fmt;
 
 use cad::{Foot, Model};
 use serde::Serialize;
 
 /// Name and version of the JSON document.
-pub const FEET_SCHEMA: &str = "sagitta-feet-1";
+pub const SCHEMA: &str = "sagitta-feet-2";
 
 /// The feet of a list of points, in figures. Lengths are in the unit of the CAD file, times `scale`.
 #[derive(Clone, Debug, Serialize)]
 pub struct FeetReport {
-    /// [`FEET_SCHEMA`].
+    /// [`SCHEMA`].
     pub schema: &'static str,
     /// Version of the program.
     pub version: &'static str,
@@ -28,22 +27,31 @@ pub struct FeetReport {
     pub proven: usize,
     /// Feet that are not.
     pub unproven: usize,
-    /// These, by the reason.
-    pub doubts: BTreeMap<String, usize>,
-    /// Feet by the way the search ended.
-    pub ends: BTreeMap<&'static str, usize>,
-    /// Feet by the entity that they lie on.
-    pub feet: BTreeMap<String, usize>,
+    /// Number of these for each reason.
+    pub unproven_by_reason: BTreeMap<String, usize>,
+    /// Number of feet for each way the search ended.
+    pub feet_by_end: BTreeMap<&'static str, usize>,
+    /// Number of feet on each entity.
+    pub feet_by_entity: BTreeMap<String, usize>,
     /// Mean distance of the points from their feet.
     pub mean_distance: f64,
-    /// The largest distance, and which point that is, counted from 1.
-    pub largest_distance: (f64, usize),
+    /// The point that is farthest from its foot; nothing where there are no points.
+    pub farthest: Option<FarthestPoint>,
     /// What a user should know.
     pub notes: Vec<String>,
     /// Seconds that the projection took, without reading and writing.
     pub seconds: f64,
     /// Threads that worked.
     pub threads: usize,
+}
+
+/// A point and its distance from its foot.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct FarthestPoint {
+    /// Which point it is, from 1.
+    pub point: usize,
+    /// Its distance.
+    pub distance: f64,
 }
 
 /// A CAD file.
@@ -55,6 +63,7 @@ pub struct CadReport {
     pub unit: String,
     /// What its coordinates were multiplied by.
     pub scale: f64,
+    /// Length of the diagonal of its bounding box, scaled.
     pub diagonal: f64,
 }
 
@@ -89,7 +98,7 @@ impl FeetReport {
     #[must_use]
     pub fn new(cad: CadReport, group: &[String], entities: usize, feet: &[Foot], seconds: f64) -> FeetReport {
         let mut report = FeetReport {
-            schema: FEET_SCHEMA,
+            schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
             cad,
             group: group.to_vec(),
@@ -97,55 +106,26 @@ impl FeetReport {
             points: feet.len(),
             proven: feet.iter().filter(|foot| foot.is_proven()).count(),
             unproven: 0,
-            doubts: BTreeMap::new(),
-            ends: BTreeMap::new(),
-            feet: BTreeMap::new(),
+            unproven_by_reason: BTreeMap::new(),
+            feet_by_end: BTreeMap::new(),
+            feet_by_entity: BTreeMap::new(),
             mean_distance: feet.iter().map(|foot| foot.distance).sum::<f64>() / feet.len().max(1) as f64,
-            largest_distance: (0.0, 0),
+            farthest: None,
             notes: Vec::new(),
             seconds,
             threads: rayon::current_num_threads(),
         };
         report.unproven = report.points - report.proven;
         for (i, foot) in feet.iter().enumerate() {
-            *report.ends.entry(end_of(foot)).or_default() += 1;
-            *report.feet.entry(foot.entity.to_string()).or_default() += 1;
+            *report.feet_by_end.entry(end_of(foot)).or_default() += 1;
+            *report.feet_by_entity.entry(foot.entity.to_string()).or_default() += 1;
             if let Some(doubt) = foot.doubt {
-                *report.doubts.entry(doubt.to_string()).or_default() += 1;
+                *report.unproven_by_reason.entry(doubt.to_string()).or_default() += 1;
             }
-            if foot.distance > report.largest_distance.0 || i == 0 {
-                report.largest_distance = (foot.distance, i + 1);
+            if report.farthest.is_none_or(|known| foot.distance > known.distance) {
+                report.farthest = Some(FarthestPoint { point: i + 1, distance: foot.distance });
             }
         }
         report
-    }
-}
-
-impl fmt::Display for FeetReport {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let cad = &self.cad;
-        writeln!(
-            f,
-            "{}: {}, unit {}, scale {}, {:.6} across",
-            cad.path, cad.format, cad.unit, cad.scale, cad.diagonal
-        )?;
-        let (largest, at) = self.largest_distance;
-        writeln!(
-            f,
-            "{} points on {} entities: mean distance {:.6e}, largest {largest:.6e} (point {at})",
-            self.points, self.entities, self.mean_distance
-        )?;
-        let counts = |map: &mut dyn Iterator<Item = (String, usize)>| {
-            map.map(|(what, count)| format!("{count} {what}")).collect::<Vec<_>>().join(", ")
-        };
-        writeln!(f, "ends: {}", counts(&mut self.ends.iter().map(|(end, n)| ((*end).to_owned(), *n))))?;
-        write!(f, "proven to be the closest: {}, not proven: {}", self.proven, self.unproven)?;
-        if !self.doubts.is_empty() {
-            write!(f, " ({})", counts(&mut self.doubts.iter().map(|(doubt, n)| (doubt.clone(), *n))))?;
-        }
-        for note in &self.notes {
-            write!(f, "\nnote: {note}")?;
-        }
-        write!(f, "\nseconds: {:.3} on {} threads", self.seconds, self.threads)
     }
 }

@@ -1,16 +1,59 @@
-//! What is told of a curved mesh: to people as text, to programs as JSON.
+//! Results as documents: JSON for programs, text for people.
 //!
-//! Each JSON document is a struct of this module, field by field; its `schema` changes when a field changes its meaning or
-//! goes away. Lengths are in the mesh's unit, times in seconds, memory in bytes.
+//! | document | of | data | text |
+//! |---|---|---|---|
+//! | [`Report`] | `sagitta curve` | [`curve`], filled by [`report()`] | `text/curve.rs` |
+//! | [`CheckReport`] | `sagitta check` | [`check`] | `text/check.rs` |
+//! | [`FeetReport`] | `sagitta project` | [`feet`] | `text/feet.rs` |
+//! | [`associate::Summary`] | `sagitta link`, `curve --dry-run` | there | `text/association.rs` |
+//! | [`validate::Validation`] | `sagitta validate` | there | there |
+//!
+//! A JSON document is its struct, field by field. Its `schema` names what it is and the version, which changes when a field
+//! changes its meaning or goes away. Lengths are in the mesh's unit, times in seconds, memory in bytes, angles in degrees.
+//! Numbers are finite: what is not known is `null`.
+//!
+//! [`associate::Summary`]: crate::associate::Summary
+//! [`validate::Validation`]: crate::validate::Validation
 
-mod certificate;
-mod check;
 #[cfg(feature = "cad")]
-mod curved;
+mod build;
+pub mod certificate;
+pub mod check;
 #[cfg(feature = "cad")]
-mod feet;
+pub mod curve;
+#[cfg(feature = "cad")]
+pub mod feet;
+#[cfg(feature = "cad")]
+mod fields;
+mod text;
 
-pub use certificate::{CertificateReport, WorstElement};
+use serde::Serialize;
+
 pub use check::CheckReport;
 #[cfg(feature = "cad")]
-pub use {curved::*, feet::*};
+pub use {
+    build::report,
+    curve::Report,
+    feet::{CadReport, FeetReport, end_of},
+    fields::fields,
+};
+
+/// Proven bounds of a minimum: it is not smaller than `lower`, and a value of at most `upper` is attained.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Bounds {
+    /// No value is smaller; nothing where there is no such bound.
+    pub lower: Option<f64>,
+    /// Some value is at most this; nothing where none is known.
+    pub upper: Option<f64>,
+}
+
+impl From<crate::certify::Bounds> for Bounds {
+    fn from(bounds: crate::certify::Bounds) -> Bounds {
+        Bounds { lower: finite(bounds.lower), upper: finite(bounds.upper) }
+    }
+}
+
+/// A number as JSON can hold it.
+fn finite(value: f64) -> Option<f64> {
+    Some(value).filter(|value| value.is_finite())
+}

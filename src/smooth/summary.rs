@@ -21,7 +21,7 @@ pub struct Smoothed {
 }
 
 /// The smallest costs of a mesh.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Summary {
     /// Smallest `C_WCN`.
     pub c_wcn: f64,

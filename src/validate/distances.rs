@@ -17,17 +17,17 @@ pub struct Measured {
     /// Sheet or string.
     pub name: String,
     /// The CAD entities.
-    pub on: String,
+    pub cad: String,
     /// Its points.
     pub points: usize,
     /// Those farther away than the tolerance.
-    pub off: usize,
+    pub off_cad: usize,
     /// The largest distance.
-    pub farthest: f64,
+    pub cad_distance_max: f64,
     /// The number of the node that has it.
     pub node: u64,
-    /// The place of that node.
-    pub at: [f64; 3],
+    /// The position of that node.
+    pub position: [f64; 3],
     /// Line of the run in the linkage file.
     pub line: Option<u32>,
 }
@@ -146,26 +146,26 @@ impl Ruler<'_> {
     ) -> Option<Measured> {
         let entities = self.geometry.of(target);
         let group = group(self.model, &entities)?.ok()?;
-        let places: Vec<DVec3> = nodes.iter().map(|n| self.linked.mesh.points[n.index()]).collect();
-        let feet = group.closest_batch(&places, &mut []);
+        let positions: Vec<DVec3> = nodes.iter().map(|n| self.linked.mesh.points[n.index()]).collect();
+        let feet = group.closest_batch(&positions, &mut []);
         let worst = (0..feet.len()).max_by(|&a, &b| feet[a].distance.total_cmp(&feet[b].distance))?;
-        let on = entities.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
-        let off = feet.iter().filter(|foot| foot.distance > self.tolerance).count();
+        let cad = entities.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+        let off_cad = feet.iter().filter(|foot| foot.distance > self.tolerance).count();
         let measured = Measured {
             name: name.to_owned(),
-            on,
+            cad,
             points: nodes.len(),
-            off,
-            farthest: feet[worst].distance,
+            off_cad,
+            cad_distance_max: feet[worst].distance,
             node: self.linked.tag(nodes[worst]),
-            at: places[worst].to_array(),
+            position: positions[worst].to_array(),
             line: origin.position().map(|position| position.line.get()),
         };
-        if off > 0 {
+        if off_cad > 0 {
             findings.push(Code::OffGeometry, origin, || {
-                let Measured { points, node, farthest, on, .. } = &measured;
-                let [x, y, z] = places[worst].to_array();
-                format!("{off} of the {points} points of {name} are off {on}: node {node} at ({x:.6}, {y:.6}, {z:.6}) by {farthest:.3e}")
+                let Measured { points, node, cad_distance_max: distance, cad, .. } = &measured;
+                let [x, y, z] = positions[worst].to_array();
+                format!("{off_cad} of the {points} points of {name} are off {cad}: node {node} at ({x:.6}, {y:.6}, {z:.6}) by {distance:.3e}")
             });
         }
         Some(measured)

@@ -36,7 +36,7 @@ use linked_mesh::LinkedMesh;
 use references::Geometry;
 
 /// Name and version of the JSON document.
-pub const SCHEMA: &str = "sagitta-validation-1";
+pub const SCHEMA: &str = "sagitta-validation-2";
 
 /// What is to be held against what.
 #[derive(Clone, Debug)]

@@ -13,9 +13,9 @@ impl fmt::Display for Validation {
             }
             writeln!(f, " {} {}: {}: {}", finding.severity, finding.code, finding.message, finding.remedy)?;
         }
-        let told = self.errors + self.warnings + self.notes;
-        if told > self.findings.len() {
-            writeln!(f, "... and {} more of the same kinds", told - self.findings.len())?;
+        let total = self.errors + self.warnings + self.notes;
+        if total > self.findings.len() {
+            writeln!(f, "... and {} more of the same kinds", total - self.findings.len())?;
         }
         if !self.coverage.is_empty() {
             writeln!(f, "{:<32}{:>9}{:>9}{:>18}", "patch", "faces", "linked", "without geometry")?;
@@ -26,7 +26,7 @@ impl fmt::Display for Validation {
         }
         if let Some(tolerance) = self.tolerance {
             writeln!(f, "distances from the CAD, tolerance {tolerance:.2e}")?;
-            writeln!(f, "{:<32}{:>9}{:>6}{:>11}  {:<30}  on", "what", "points", "off", "farthest", "node, at")?;
+            writeln!(f, "{:<32}{:>9}{:>6}{:>11}  {:<30}  CAD", "what", "points", "off", "farthest", "node, at")?;
             let mut all = self.sheets.iter().chain(&self.strings).chain(&self.points);
             all.try_for_each(|measured| measured.line(f))?;
         }
@@ -41,12 +41,12 @@ impl fmt::Display for Validation {
 
 impl Measured {
     fn line(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [x, y, z] = self.at;
-        let place = format!("{} ({x:.4}, {y:.4}, {z:.4})", self.node);
+        let [x, y, z] = self.position;
+        let farthest = format!("{} ({x:.4}, {y:.4}, {z:.4})", self.node);
         writeln!(
             f,
-            "{:<32}{:>9}{:>6}{:>11.2e}  {place:<30}  {}",
-            self.name, self.points, self.off, self.farthest, self.on
+            "{:<32}{:>9}{:>6}{:>11.2e}  {farthest:<30}  {}",
+            self.name, self.points, self.off_cad, self.cad_distance_max, self.cad
         )
     }
 }

@@ -74,7 +74,7 @@ fn good_files_are_clean() {
             assert!(sum("faces") > 0 && sum("faces") == sum("linked"), "{case}: {:#}", validation.json["coverage"]);
             let sheets = validation.json["sheets"].as_array().unwrap();
             assert!(
-                !sheets.is_empty() && sheets.iter().all(|sheet| sheet["farthest"].as_f64().unwrap() < 1e-9),
+                !sheets.is_empty() && sheets.iter().all(|sheet| sheet["cad_distance_max"].as_f64().unwrap() < 1e-9),
                 "{case}"
             );
         }

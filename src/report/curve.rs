@@ -1,19 +1,11 @@
 //! The report of a curved mesh.
 
-mod build;
-mod text;
-
 use serde::Serialize;
 
-use super::CertificateReport;
-use crate::curve::LowerOrder;
-use crate::quality::GridLineAngles;
-use crate::smooth::Summary;
-
-pub use build::{fields, report};
+use super::certificate::CertificateReport;
 
 /// Name and version of the JSON document.
-pub const SCHEMA: &str = "sagitta-report-1";
+pub const SCHEMA: &str = "sagitta-report-2";
 
 /// A curved mesh in figures.
 #[derive(Clone, Debug, Serialize)]
@@ -34,15 +26,15 @@ pub struct Report {
     pub cells: Vec<CellReport>,
     /// By boundary entity of the mesh.
     pub patches: Vec<PatchReport>,
-    /// Boundary faces that are tied to no CAD face.
-    pub unlinked_faces: usize,
-    /// Boundary faces taken off the CAD, so that the elements behind them are valid.
-    pub given_up: Vec<GivenUpFace>,
+    /// Number of boundary faces that are associated with no CAD face.
+    pub faces_without_cad: usize,
+    /// Boundary faces that are associated with the CAD and yet not on it, so that the elements behind them are valid.
+    pub off_cad: Vec<OffCadReport>,
     /// Whether the faces on the CAD are free of folds.
     pub walls: WallReport,
-    /// Angles at which grid lines off the wall bend from layer to layer.
+    /// Angles at which grid lines off the walls bend from layer to layer.
     pub grid_line_angles: GridLinesReport,
-    /// Bounds of the mesh's smallest J / J_c and scaled Jacobian.
+    /// Bounds of the mesh's smallest J / J_c and scaled Jacobian, and its worst elements.
     pub certificate: CertificateReport,
     /// What the smoother did.
     pub smoothing: SmoothingReport,
@@ -50,10 +42,10 @@ pub struct Report {
     pub projections: Projections,
     /// What a user should know.
     pub notes: Vec<String>,
-    /// Seconds a step.
+    /// Seconds a step, all orders together.
     pub seconds: Vec<StepReport>,
-    /// Largest resident memory of the process so far; 0 where the system does not tell.
-    pub peak_memory: u64,
+    /// Largest resident memory of the process so far; nothing where the system does not say.
+    pub peak_memory: Option<u64>,
     /// Threads that worked.
     pub threads: usize,
 }
@@ -94,8 +86,8 @@ pub struct CellReport {
     pub c_wcn_mean: f64,
     /// Smallest `C_JAC` (eq. 6) at the closing survey.
     pub c_jac_min: f64,
-    /// Proven lower bound of their J / J_c.
-    pub certified_min: f64,
+    /// Proven lower bound of their J / J_c; the least of all kinds is the certificate's. Nothing where there is no bound.
+    pub j_over_jc_min: Option<f64>,
     /// Elements proven valid.
     pub valid: usize,
     /// Elements proven invalid.
@@ -111,29 +103,31 @@ pub struct PatchReport {
     pub entity: String,
     /// Its physical names.
     pub names: Vec<String>,
-    /// The CAD groups that its faces lie on; empty where it is not tied to the CAD.
-    pub surfaces: Vec<String>,
+    /// The groups of CAD faces that its faces lie on; empty where it is not associated with the CAD.
+    pub cad_groups: Vec<String>,
     /// Number of faces.
     pub faces: usize,
-    /// Farthest point of its curved faces from the CAD, at (3p)^2 samples a face; nothing where it is not tied to the CAD.
-    pub farthest: Option<f64>,
+    /// Largest distance of its curved faces from the CAD, at (3p)^2 samples a face; nothing where it is not associated with it.
+    pub cad_distance_max: Option<f64>,
     /// Largest move of a linear node onto the CAD.
-    pub largest_offset: f64,
+    pub node_move_max: f64,
 }
 
-/// A boundary face that is not on the CAD as it should be.
+/// A boundary face that is associated with the CAD and yet not on it.
 #[derive(Clone, Debug, Serialize)]
-pub struct GivenUpFace {
+pub struct OffCadReport {
     /// Its number in the file.
     pub element: u64,
     /// The mesh entity that it belongs to.
     pub entity: String,
-    /// What it went back to: order 1 is the straight face, a higher one the face curved at that order.
+    /// What it went back towards: order 1 is the straight face, a higher one the face curved at that order.
     pub order: usize,
-    /// The share of its displacement from there that is left, 0 to 1.
-    pub share: f64,
+    /// The fraction of its displacement from there that is left, 0 to 1.
+    pub fraction: f64,
+    /// Its largest distance from the CAD, at (3p)^2 samples.
+    pub cad_distance: Option<f64>,
     /// Its middle.
-    pub place: [f64; 3],
+    pub position: [f64; 3],
 }
 
 /// Curved faces on the CAD: folded where the normal leans by 90 degrees or more against the linear face's, and the face is no graph
@@ -159,34 +153,83 @@ pub struct WallFailure {
     pub element: u64,
     /// The mesh entity that it belongs to.
     pub entity: String,
-    /// `folded` or `undecided`.
-    pub verdict: &'static str,
+    /// What is proven of it.
+    pub verdict: WallVerdict,
     /// A point of the fold.
-    pub place: [f64; 3],
+    pub position: [f64; 3],
+}
+
+/// What is proven of a face that is not proven to be free of folds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum WallVerdict {
+    /// It folds.
+    Folded,
+    /// Neither that it folds nor that it does not.
+    Undecided,
 }
 
 /// Grid-line angles ([`crate::quality::GridLines`]).
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct GridLinesReport {
     /// Of the curved mesh, between the tangents of its edges.
-    pub curved: GridLineAngles,
+    pub curved: Angles,
     /// Of the same grid lines in the linear mesh.
-    pub linear: GridLineAngles,
+    pub linear: Angles,
+}
+
+/// Angles at the inner nodes of grid lines, in degrees.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Angles {
+    /// Number of grid lines with at least one inner node.
+    pub lines: usize,
+    /// Number of angles: inner nodes of grid lines.
+    pub angles: usize,
+    /// The angle that 99 % of the angles do not exceed.
+    pub p99: f64,
+    /// The largest angle.
+    pub max: f64,
 }
 
 /// What the smoother did.
 #[derive(Clone, Debug, Serialize)]
 pub struct SmoothingReport {
-    /// What was done at the orders below.
-    pub lower_orders: Vec<LowerOrder>,
+    /// What it did at the orders below.
+    pub lower_orders: Vec<LowerOrderReport>,
     /// Sweeps over the active nodes.
     pub sweeps: usize,
     /// Whether it was ended before it was done.
     pub stopped: bool,
     /// Smallest costs after perturbation.
-    pub start: Summary,
+    pub start: Costs,
     /// Smallest costs at the end.
-    pub end: Summary,
+    pub end: Costs,
+}
+
+/// What the smoother did at an order below the one asked for.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct LowerOrderReport {
+    /// The order.
+    pub order: u8,
+    /// Sweeps over the active nodes.
+    pub sweeps: usize,
+    /// Whether it was ended before it was done; the orders between are left out then.
+    pub stopped: bool,
+    /// Smallest costs before the first sweep.
+    pub start: Costs,
+    /// Smallest costs at the end.
+    pub end: Costs,
+}
+
+/// The smallest costs of a mesh.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Costs {
+    /// Smallest `C_WCN`.
+    pub c_wcn: f64,
+    /// Smallest `C_JAC`.
+    pub c_jac: f64,
+    /// Elements with a cost of 0 or less.
+    pub inverted: usize,
 }
 
 /// Counts of closest points.

@@ -1,24 +1,25 @@
-//! Figures of a curved mesh, gathered.
+//! The report of a curved mesh, filled in.
 
 use std::collections::BTreeSet;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::{
-    CellReport, GivenUpFace, GridLinesReport, Input, Nodes, PatchReport, Projections, Report, SCHEMA, SmoothingReport,
-    StepReport, WallFailure, WallReport,
+use super::certificate::CertificateReport;
+use super::curve::{
+    Angles, CellReport, Costs, GridLinesReport, Input, LowerOrderReport, Nodes, OffCadReport, PatchReport, Projections,
+    Report, SCHEMA, SmoothingReport, StepReport, WallFailure, WallReport, WallVerdict,
 };
+use super::finite;
 use crate::associate::Classification;
 use crate::certify::{FaceFinding, Verdict};
 use crate::curve::layers::straight_elements;
 use crate::curve::recover::OffCadFace;
-use crate::curve::{Curved, Job};
+use crate::curve::{Curved, Job, LowerOrder};
 use crate::element::{Cell, Order, Samples, basis};
-use crate::formats::{Field, Support, Values};
 use crate::mesh::EntityKey;
-use crate::quality::GridLines;
-use crate::report::CertificateReport;
+use crate::quality::{GridLineAngles, GridLines};
+use crate::smooth::Summary;
 
 /// Divisions of a face, in multiples of p, at which its distance from the CAD is sampled.
 const DISTANCE_DENSITY: usize = 3;
@@ -27,7 +28,7 @@ const DISTANCE_DENSITY: usize = 3;
 #[must_use]
 pub fn report(job: &Job, curved: &Curved) -> Report {
     let mesh = &curved.mesh;
-    let linked = |classification: &Classification| matches!(classification, Classification::Surface(_));
+    let has_cad = |classification: &Classification| matches!(classification, Classification::Surface(_));
     let (grid_line_angles, (cells, patches)) =
         rayon::join(|| grid_line_angles(curved), || rayon::join(|| cells(curved), || patches(curved)));
     Report {
@@ -45,17 +46,17 @@ pub fn report(job: &Job, curved: &Curved) -> Report {
         nodes: Nodes { linear: curved.linear_nodes, curved: mesh.points.len() },
         cells,
         patches,
-        unlinked_faces: curved.association.faces.iter().filter(|h| !linked(h)).count(),
-        given_up: curved.off_cad.iter().map(|given| given_up(curved, given)).collect(),
+        faces_without_cad: curved.association.faces.iter().filter(|own| !has_cad(own)).count(),
+        off_cad: curved.off_cad.par_iter().map(|face| off_cad(curved, face)).collect(),
         walls: walls(curved),
         grid_line_angles,
         certificate: CertificateReport::new(mesh, &curved.certificate),
         smoothing: SmoothingReport {
-            lower_orders: curved.lower_orders.clone(),
+            lower_orders: curved.lower_orders.iter().map(LowerOrderReport::from).collect(),
             sweeps: curved.smoothed.sweeps,
             stopped: curved.smoothed.stopped,
-            start: curved.smoothed.start,
-            end: curved.smoothed.end,
+            start: curved.smoothed.start.into(),
+            end: curved.smoothed.end.into(),
         },
         projections: Projections { count: curved.wall.queries, unproven: curved.wall.unproven },
         notes: curved.mesh.notes.iter().chain(&curved.association.notes).cloned().collect(),
@@ -72,8 +73,11 @@ fn walls(curved: &Curved) -> WallReport {
         WallFailure {
             element: curved.mesh.blocks[face.block].tags[face.element],
             entity: face.entity.to_string(),
-            verdict: if finding.verdict == Verdict::Undecided { "undecided" } else { "folded" },
-            place: finding.place.to_array(),
+            verdict: match finding.verdict {
+                Verdict::Undecided => WallVerdict::Undecided,
+                _ => WallVerdict::Folded,
+            },
+            position: finding.place.to_array(),
         }
     };
     let (faces, folded, failed) = (walls.faces, walls.folded(), walls.failures.len());
@@ -83,7 +87,7 @@ fn walls(curved: &Curved) -> WallReport {
 
 fn grid_line_angles(curved: &Curved) -> GridLinesReport {
     let lines = GridLines::new(&curved.mesh, &curved.straight);
-    GridLinesReport { curved: lines.curved(&curved.mesh.points), linear: lines.linear(&curved.straight) }
+    GridLinesReport { curved: lines.curved(&curved.mesh.points).into(), linear: lines.linear(&curved.straight).into() }
 }
 
 fn cells(curved: &Curved) -> Vec<CellReport> {
@@ -104,7 +108,7 @@ fn cells(curved: &Curved) -> Vec<CellReport> {
                 c_wcn_min: costs().map(|c| c.c_wcn).fold(1.0, f64::min),
                 c_wcn_mean: costs().map(|c| c.mean_c_wcn).sum::<f64>() / tally.elements as f64,
                 c_jac_min: costs().map(|c| c.c_jac).fold(1.0, f64::min),
-                certified_min: own().map(|e| curved.certificate.minima[e]).fold(f64::INFINITY, f64::min),
+                j_over_jc_min: own().map(|e| curved.certificate.minima[e]).reduce(f64::min).and_then(finite),
                 valid: tally.valid,
                 invalid: tally.invalid,
                 undecided: tally.undecided,
@@ -133,14 +137,14 @@ fn patch(curved: &Curved, entity: EntityKey) -> PatchReport {
     PatchReport {
         entity: entity.to_string(),
         names: curved.mesh.names_of(entity),
-        surfaces: on.iter().map(|&s| curved.association.surfaces[s].label.clone()).collect(),
+        cad_groups: on.iter().map(|&s| curved.association.surfaces[s].label.clone()).collect(),
         faces: faces.len(),
-        farthest: distances.into_iter().reduce(f64::max),
-        largest_offset: corners.map(|n| curved.wall.displacement(n.index()).length()).fold(0.0, f64::max),
+        cad_distance_max: distances.into_iter().reduce(f64::max),
+        node_move_max: corners.map(|n| curved.wall.displacement(n.index()).length()).fold(0.0, f64::max),
     }
 }
 
-/// The farthest point of a boundary face from the CAD surface that it is tied to.
+/// The largest distance of a boundary face from the CAD that it is associated with.
 fn distance(curved: &Curved, face: usize) -> Option<f64> {
     let Classification::Surface(surface) = curved.association.faces[face] else { return None };
     let group = &curved.association.surfaces[surface].group;
@@ -155,36 +159,43 @@ fn distance(curved: &Curved, face: usize) -> Option<f64> {
     far.reduce(f64::max)
 }
 
-fn given_up(curved: &Curved, given: &OffCadFace) -> GivenUpFace {
-    let face = &curved.boundary.faces[given.face];
-    let corners = &curved.boundary.corners[given.face];
+fn off_cad(curved: &Curved, off: &OffCadFace) -> OffCadReport {
+    let face = &curved.boundary.faces[off.face];
+    let corners = &curved.boundary.corners[off.face];
     let middle: DVec3 = corners.iter().map(|n| curved.mesh.points[n.index()]).sum::<DVec3>() / corners.len() as f64;
-    GivenUpFace {
+    OffCadReport {
         element: curved.mesh.blocks[face.block].tags[face.element],
         entity: face.entity.to_string(),
-        order: given.order.get(),
-        share: given.fraction,
-        place: middle.to_array(),
+        order: off.order.get(),
+        fraction: off.fraction,
+        cad_distance: distance(curved, off.face),
+        position: middle.to_array(),
     }
 }
 
-/// Per-cell values for pictures: certified minimum of J/J_c, and worst C_WCN.
-#[must_use]
-pub fn fields(curved: &Curved) -> Vec<Field> {
-    let field = |name: &str, values| Field { name: name.to_owned(), support: Support::Elements, values };
-    let real = |name: &str, values| field(name, Values::Real(values));
-    let straight = straight_elements(&curved.mesh, &curved.straight);
-    vec![
-        field("straight", Values::Integer(straight.into_iter().map(i64::from).collect())),
-        real("certified_min_J_over_Jc", curved.certificate.minima.clone()),
-        real("C_WCN", curved.smoothed.costs.iter().map(|c| c.c_wcn).collect()),
-    ]
+impl From<&LowerOrder> for LowerOrderReport {
+    fn from(lower: &LowerOrder) -> LowerOrderReport {
+        let &LowerOrder { order, sweeps, stopped, start, end } = lower;
+        LowerOrderReport { order: order.into(), sweeps, stopped, start: start.into(), end: end.into() }
+    }
+}
+
+impl From<Summary> for Costs {
+    fn from(Summary { c_wcn, c_jac, inverted }: Summary) -> Costs {
+        Costs { c_wcn, c_jac, inverted }
+    }
+}
+
+impl From<GridLineAngles> for Angles {
+    fn from(GridLineAngles { lines, angles, p99, max }: GridLineAngles) -> Angles {
+        Angles { lines, angles, p99, max }
+    }
 }
 
 /// `VmHWM` of `/proc/self/status`, in bytes.
-fn peak_memory() -> u64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-    let kilobytes = line.and_then(|rest| rest.trim().trim_end_matches(" kB").parse::<u64>().ok());
-    kilobytes.unwrap_or(0) * 1024
+fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kilobytes: u64 = line.trim().trim_end_matches(" kB").parse().ok()?;
+    Some(kilobytes * 1024)
 }

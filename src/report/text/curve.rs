@@ -1,0 +1,127 @@
+//! A curved mesh in words: tables of its cells and patches, what was not done, and what is proven.
+
+use std::fmt::{self, Display};
+
+use super::{LISTED, certificate, number, patch, position};
+use crate::report::Report;
+use crate::report::curve::WallVerdict;
+
+impl Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (order, nodes) = (self.order, self.nodes);
+        writeln!(f, "{} -> P{order}: {} nodes ({} in the linear mesh)", self.input.mesh, nodes.curved, nodes.linear)?;
+        writeln!(f)?;
+        self.cells(f)?;
+        writeln!(f)?;
+        self.patches(f)?;
+        writeln!(f)?;
+        self.work(f)?;
+        for note in &self.notes {
+            writeln!(f, "note: {note}")?;
+        }
+        self.grid_line_angles(f)?;
+        self.off_cad(f)?;
+        self.walls(f)?;
+        certificate(&self.certificate, self.certified, f)
+    }
+}
+
+impl Report {
+    fn cells(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let heads = ["cell", "count", "straight", "C_WCN min", "mean", "C_JAC min", "J/Jc >=", "valid"];
+        let [cell, count, straight, wcn, mean, jac, proven, valid] = heads;
+        writeln!(f, "{cell:<10}{count:>10}{straight:>10}{wcn:>12}{mean:>9}{jac:>12}{proven:>10}{valid:>10}")?;
+        for c in &self.cells {
+            let (min, mean, jac, proven) = (c.c_wcn_min, c.c_wcn_mean, c.c_jac_min, number(c.j_over_jc_min));
+            write!(f, "{:<10}{:>10}{:>10}", c.cell, c.count, c.straight)?;
+            writeln!(f, "{min:>12.4}{mean:>9.4}{jac:>12.4}{proven:>10}{:>10}", c.valid)?;
+        }
+        Ok(())
+    }
+
+    fn patches(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [name, faces, distance, moved, groups] = ["patch", "faces", "CAD distance", "node move", "CAD faces"];
+        writeln!(f, "{name:<24}{faces:>9}{distance:>14}{moved:>11}  {groups}")?;
+        for p in &self.patches {
+            let distance = p.cad_distance_max.map_or("-".to_owned(), |d| format!("{d:.2e}"));
+            let groups = if p.cad_groups.is_empty() { "none".to_owned() } else { p.cad_groups.join("; ") };
+            let (name, moved) = (patch(&p.names, &p.entity), p.node_move_max);
+            writeln!(f, "{name:<24}{:>9}{distance:>14}{moved:>11.2e}  {groups}", p.faces)?;
+        }
+        if self.faces_without_cad > 0 {
+            writeln!(f, "{} boundary faces are not associated with the CAD", self.faces_without_cad)?;
+        }
+        Ok(())
+    }
+
+    fn work(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let s = &self.smoothing;
+        let stopped = if s.stopped { ", stopped early" } else { "" };
+        for l in &s.lower_orders {
+            let (sweeps, wcn, jac) = (l.sweeps, l.end.c_wcn, l.end.c_jac);
+            writeln!(f, "smoothing at P{}: {sweeps} sweeps; min C_WCN {wcn:.4}, min C_JAC {jac:.4}", l.order)?;
+        }
+        writeln!(
+            f,
+            "smoothing: {} sweeps{stopped}; min C_WCN {:.4} -> {:.4}, min C_JAC {:.4} -> {:.4}, inverted {} -> {}",
+            s.sweeps, s.start.c_wcn, s.end.c_wcn, s.start.c_jac, s.end.c_jac, s.start.inverted, s.end.inverted
+        )?;
+        let p = &self.projections;
+        writeln!(f, "closest points on the CAD: {} ({} not proven to be the closest)", p.count, p.unproven)?;
+        let steps: Vec<String> = self.seconds.iter().map(|s| format!("{} {:.2}", s.step, s.seconds)).collect();
+        write!(f, "seconds: {}; {} threads", steps.join(", "), self.threads)?;
+        match self.peak_memory {
+            Some(bytes) => writeln!(f, ", peak memory {:.0} MB", bytes as f64 / 1e6),
+            None => writeln!(f),
+        }
+    }
+
+    fn grid_line_angles(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (curved, linear) = (&self.grid_line_angles.curved, &self.grid_line_angles.linear);
+        if curved.angles == 0 {
+            return Ok(());
+        }
+        writeln!(
+            f,
+            "grid-line angles off the walls, in degrees: 99 % of {} are at most {:.2}, largest {:.2} (linear mesh: {:.2}, {:.2})",
+            curved.angles, curved.p99, curved.max, linear.p99, linear.max
+        )
+    }
+
+    fn off_cad(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.off_cad.is_empty() {
+            return Ok(());
+        }
+        writeln!(f, "off the CAD: {} boundary faces, so that all elements are valid", self.off_cad.len())?;
+        for face in self.off_cad.iter().take(LISTED) {
+            let percent = 100.0 * face.fraction;
+            let base = match face.order {
+                1 => "the straight face".to_owned(),
+                order => format!("the face of P{order}"),
+            };
+            let far = face.cad_distance.map_or_else(String::new, |d| format!("up to {d:.2e} off, "));
+            let (element, entity, at) = (face.element, &face.entity, position(face.position));
+            writeln!(
+                f,
+                "  face {element} of {entity}: {far}{percent:.0} % of the way from {base} to the CAD, near {at}"
+            )?;
+        }
+        Ok(())
+    }
+
+    fn walls(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let w = &self.walls;
+        if w.failures.is_empty() {
+            return writeln!(f, "walls: none of {} faces folds (proven)", w.faces);
+        }
+        writeln!(f, "walls: {} of {} faces FOLD, {} are undecided", w.folded, w.faces, w.undecided)?;
+        for face in w.failures.iter().take(LISTED) {
+            let verdict = match face.verdict {
+                WallVerdict::Folded => "folded",
+                WallVerdict::Undecided => "undecided",
+            };
+            writeln!(f, "  {verdict} face {} of {} near {}", face.element, face.entity, position(face.position))?;
+        }
+        Ok(())
+    }
+}
