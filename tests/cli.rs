@@ -51,8 +51,9 @@ fn examples(text: &str) -> Vec<String> {
     found
 }
 
-/// Runs commands one after another in the repository; files that they name and that do not exist lie in `dir`.
-fn run(commands: &[String], dir: &Path) {
+/// Runs commands one after another in the repository; files that they name and that do not exist lie in `dir`. What they print.
+fn run(commands: &[String], dir: &Path) -> String {
+    let mut printed = String::new();
     for command in commands {
         let command = command.split('#').next().unwrap();
         let place = |word: &str| -> OsString {
@@ -67,7 +68,9 @@ fn run(commands: &[String], dir: &Path) {
             let file = arguments.iter().position(|word| word == option).map(|at| PathBuf::from(&arguments[at + 1]));
             assert!(file.is_none_or(|file| file.starts_with(dir) && file.exists()), "{option} of {command}");
         }
+        printed.push_str(&outcome.stdout);
     }
+    printed
 }
 
 #[test]
@@ -83,13 +86,29 @@ fn examples_of_the_help_run() {
     run(&commands, tempfile::tempdir().unwrap().path());
 }
 
+/// The blocks of a language in a Markdown text.
+fn blocks<'a>(text: &'a str, language: &str) -> Vec<&'a str> {
+    let fence = format!("```{language}\n");
+    text.split(&fence).skip(1).map(|block| block.split("```").next().unwrap()).collect()
+}
+
 #[test]
-fn examples_of_the_readme_run() {
-    let Ok(readme) = std::fs::read_to_string(root().join("README.md")) else { return };
-    let blocks = readme.split("```sh\n").skip(1).map(|block| block.split("```").next().unwrap());
-    let commands = examples(&blocks.collect::<String>());
-    assert!(!commands.is_empty(), "README.md shows no command of the program in its ```sh blocks");
-    run(&commands, tempfile::tempdir().unwrap().path());
+fn examples_of_the_documents_run() {
+    let documents = std::fs::read_dir(root().join("docs")).unwrap().map(|entry| entry.unwrap().path());
+    let readme = root().join("README.md");
+    for document in documents.filter(|path| path.extension().is_some_and(|end| end == "md")).chain([readme.clone()]) {
+        let text = std::fs::read_to_string(&document).unwrap();
+        let commands = examples(&blocks(&text, "sh").concat());
+        assert!(document != readme || !commands.is_empty(), "README.md shows no command of the program");
+        let dir = tempfile::tempdir().unwrap();
+        let printed = run(&commands, dir.path());
+        // What a document shows of the output is what is printed today, figures and padding aside.
+        let wording = |text: &str| text.replace(|c: char| c.is_ascii_digit() || " -.".contains(c), "");
+        let printed = wording(&printed.replace(&format!("{}/", dir.path().display()), ""));
+        for line in blocks(&text, "text").concat().lines().filter(|_| document == readme) {
+            assert!(printed.contains(&wording(line)), "{line:?} is not printed:\n{printed}");
+        }
+    }
 }
 
 #[test]
