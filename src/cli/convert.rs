@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::form::Form;
+use super::form::{self, Form};
 use crate::cli::exit::DONE;
 use crate::cli::output::{Failure, print};
 use crate::formats;
@@ -12,10 +12,9 @@ use crate::formats;
 /// Options of `sagitta convert`.
 #[derive(Args)]
 pub(super) struct Options {
-    /// A mesh of order 1 to 4: MSH, CGNS, UGRID, SU2, VTU, legacy VTK or PLOT3D
+    #[arg(help = form::mesh("A mesh of order 1 to 4"))]
     mesh: PathBuf,
-    /// The mesh to write: .msh or .cgns for solvers, .vtu for pictures
-    #[arg(short, long, value_name = "OUT")]
+    #[arg(short, long, value_name = "OUT", help = form::output("The mesh to write"))]
     output: PathBuf,
     #[command(flatten)]
     form: Form,

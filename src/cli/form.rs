@@ -2,7 +2,17 @@
 
 use clap::Args;
 
-use crate::formats::{Field, WriteOptions, msh};
+use crate::formats::{self, Field, WriteOptions, msh};
+
+/// Help of a mesh that is read.
+pub(super) fn mesh(what: &str) -> String {
+    format!("{what}: {}", formats::readable("or"))
+}
+
+/// Help of a mesh that is written.
+pub(super) fn output(what: &str) -> String {
+    format!("{what}: {}", formats::writable())
+}
 
 /// Where a format leaves a choice.
 #[derive(Args)]

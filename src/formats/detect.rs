@@ -2,24 +2,31 @@
 
 use std::path::Path;
 
-use super::{plot3d, ugrid};
+use super::format::Format;
+use super::registry::{REGISTRY, readable};
 
-/// The formats that are read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Format {
-    Msh,
-    Cgns,
-    Ugrid,
-    Su2,
-    Vtu,
-    LegacyVtk,
-    Plot3d,
+/// What a file shows before it is read.
+pub(super) struct Head<'a> {
+    /// Its name.
+    pub(super) path: &'a Path,
+    /// Its first bytes.
+    pub(super) bytes: &'a [u8],
+    /// The same as text: without a byte-order mark and white space before it.
+    pub(super) text: &'a [u8],
 }
 
-/// Bytes of the head that are looked at.
-pub(super) const HEAD: usize = 4096;
-
-const KNOWN: &str = "Gmsh MSH 4.1 and 2.2, CGNS, UGRID, SU2, VTU, legacy VTK and PLOT3D are read";
+/// What a format says of a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// It is of this format, by a mark in its content.
+    ByContent,
+    /// It may be of this format, by its name; content without a mark.
+    ByName,
+    /// It is of this format's kin, but not read.
+    Refused(Refusal),
+    /// It is not of this format.
+    No,
+}
 
 /// Why a file is of no format that is read.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,79 +37,67 @@ pub(super) struct Refusal {
     pub(super) reason: String,
 }
 
-fn other(reason: impl Into<String>) -> Refusal {
-    Refusal { is_mesh: false, reason: reason.into() }
+impl Refusal {
+    /// A file that holds no mesh.
+    pub(super) fn other(reason: impl Into<String>) -> Refusal {
+        Refusal { is_mesh: false, reason: reason.into() }
+    }
+
+    /// A mesh that is not read.
+    pub(super) fn unread(reason: impl Into<String>) -> Refusal {
+        Refusal { is_mesh: true, reason: reason.into() }
+    }
 }
 
-fn unread(reason: impl Into<String>) -> Refusal {
-    Refusal { is_mesh: true, reason: reason.into() }
+impl<'a> Head<'a> {
+    pub(super) fn new(path: &'a Path, bytes: &'a [u8]) -> Head<'a> {
+        let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+        Head { path, bytes, text }
+    }
+
+    /// The lines of the text, trimmed.
+    pub(super) fn lines(&self) -> Vec<String> {
+        String::from_utf8_lossy(self.text).lines().map(|line| line.trim().to_owned()).collect()
+    }
 }
 
-/// What a file seems to be; else what to tell the user.
-pub(super) fn detect(path: &Path, head: &[u8]) -> Result<Format, Refusal> {
-    let text = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head).trim_ascii_start();
-    if head.is_empty() {
-        return Err(other("the file is empty"));
+/// The format of a file; else what to tell the user. Marks in the content come before names.
+pub(super) fn detect(head: &Head) -> Result<&'static Format, Refusal> {
+    if head.bytes.is_empty() {
+        return Err(Refusal::other("the file is empty"));
     }
-    if text.starts_with(b"$") {
-        return Ok(Format::Msh);
-    }
-    if head.starts_with(b"\x89HDF\r\n\x1a\n") {
-        return Ok(Format::Cgns);
-    }
-    if head.get(4..).is_some_and(|rest| rest.starts_with(b"ADF Database Version")) {
-        let reason = "a CGNS file in the old ADF form; rewrite it as HDF5: adf2hdf IN.cgns OUT.cgns \
-                      (Debian package cgns-convert)";
-        return Err(unread(reason));
-    }
-    if text.starts_with(b"# vtk DataFile") {
-        return Ok(Format::LegacyVtk);
-    }
-    if text.starts_with(b"<") {
-        return xml(text);
-    }
-    if is_su2(text) {
-        return Ok(Format::Su2);
-    }
-    if ugrid::is_name(path) {
-        return Ok(Format::Ugrid);
-    }
-    if plot3d::is_name(path) {
-        return Ok(Format::Plot3d);
-    }
-    Err(if text.starts_with(b"ISO-10303-21") {
-        other("a STEP file, which is CAD, not a mesh")
-    } else if is_unv(text) {
-        unread(
-            "an I-deas universal file (UNV), which is not read; convert it: gmsh IN.unv -save -format msh41 -o OUT.msh",
-        )
-    } else {
-        other(format!("not a mesh file of a known format; {KNOWN}"))
-    })
-}
-
-fn xml(text: &[u8]) -> Result<Format, Refusal> {
-    let text = String::from_utf8_lossy(text);
-    match text.split_once("<VTKFile") {
-        Some((_, rest)) if rest.split('>').next().is_some_and(|tag| tag.contains("\"UnstructuredGrid\"")) => {
-            Ok(Format::Vtu)
+    let mut by_name = None;
+    for &format in REGISTRY {
+        match (format.detect)(head) {
+            Verdict::ByContent => return Ok(format),
+            Verdict::Refused(refusal) => return Err(refusal),
+            Verdict::ByName => by_name = by_name.or(Some(format)),
+            Verdict::No => {}
         }
-        Some(_) => Err(unread("a VTK XML file, but of no UnstructuredGrid; save the mesh as VTU")),
-        None => Err(other(format!("an XML file, but no VTU mesh; {KNOWN}"))),
     }
+    if let Some(refusal) = FOREIGN.iter().find_map(|recognise| recognise(head)) {
+        return Err(refusal);
+    }
+    by_name.ok_or_else(|| Refusal::other(format!("not a mesh file of a known format; {} are read", readable("and"))))
 }
 
-/// Whether the first lines that are no comments are SU2's.
-fn is_su2(text: &[u8]) -> bool {
-    let text = String::from_utf8_lossy(text);
-    let line = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('%'));
-    let key = line.and_then(|line| line.split_once('=')).map(|(key, _)| key.trim());
-    key.is_some_and(|key| matches!(key, "NDIME" | "NZONE" | "IZONE" | "NELEM" | "NPOIN" | "NMARK" | "NPERIODIC"))
+/// Files of formats that are not read: what they are, and what to do.
+const FOREIGN: &[fn(&Head) -> Option<Refusal>] = &[step, universal, xml];
+
+fn step(head: &Head) -> Option<Refusal> {
+    head.text.starts_with(b"ISO-10303-21").then(|| Refusal::other("a STEP file, which is CAD, not a mesh"))
 }
 
-/// Whether the file begins as a dataset of a universal file: a line of -1, a line of a number.
-fn is_unv(text: &[u8]) -> bool {
-    let text = String::from_utf8_lossy(text);
-    let mut lines = text.lines().map(str::trim);
-    lines.next() == Some("-1") && lines.next().is_some_and(|number| number.parse::<u32>().is_ok())
+/// A dataset of an I-deas universal file: a line of -1, a line of a number.
+fn universal(head: &Head) -> Option<Refusal> {
+    let lines = head.lines();
+    let known = lines.len() > 1 && lines[0] == "-1" && lines[1].parse::<u32>().is_ok();
+    let reason =
+        "an I-deas universal file (UNV), which is not read; convert it: gmsh IN.unv -save -format msh41 -o OUT.msh";
+    known.then(|| Refusal::unread(reason))
+}
+
+fn xml(head: &Head) -> Option<Refusal> {
+    let reason = || format!("an XML file, but no mesh; {} are read", readable("and"));
+    head.text.starts_with(b"<").then(|| Refusal::other(reason()))
 }

@@ -15,31 +15,15 @@ const BUFFER: usize = 4 << 20;
 ///
 /// # Errors
 /// [`Error::Io`], also where the name belongs to something that is not a file; whatever `content` returns.
-pub(super) fn write_whole(
-    path: &Path,
-    content: impl FnOnce(&mut BufWriter<File>) -> Result<(), Unwritten>,
-) -> Result<(), Error> {
-    write_part(path, |part| {
-        let mut out = BufWriter::with_capacity(BUFFER, part.file.try_clone()?);
-        content(&mut out)?;
-        Ok(out.flush()?)
-    })
-}
-
-/// As [`write_whole`], for a content that opens the file itself, by its temporary name.
-pub(super) fn write_by_name(path: &Path, content: impl FnOnce(&Path) -> Result<(), Unwritten>) -> Result<(), Error> {
-    write_part(path, |part| content(&part.path))
-}
-
-fn write_part(path: &Path, content: impl FnOnce(&Part) -> Result<(), Unwritten>) -> Result<(), Error> {
+pub(super) fn write(path: &Path, content: impl FnOnce(&mut Part) -> Result<(), Unwritten>) -> Result<(), Error> {
     let failed = |action| move |source| Error::Io { file: path.to_path_buf(), action, source };
     // A link stays a link: its target is replaced.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
     if fs::metadata(&target).is_ok_and(|m| !m.is_file()) {
         return Err(failed("write")(io::Error::other("it exists and is not a regular file")));
     }
-    let part = Part::create(&target).map_err(failed("create"))?;
-    content(&part).map_err(|unwritten| match unwritten {
+    let mut part = Part::create(&target).map_err(failed("create"))?;
+    content(&mut part).map_err(|unwritten| match unwritten {
         Unwritten::Io(source) => failed("write")(source),
         Unwritten::Inexpressible(reason) => Error::Inexpressible { file: path.to_path_buf(), reason },
     })?;
@@ -62,7 +46,7 @@ impl From<io::Error> for Unwritten {
 }
 
 /// The file under its temporary name; removed when dropped before it got its own.
-struct Part {
+pub(super) struct Part {
     path: PathBuf,
     file: File,
     kept: bool,
@@ -77,6 +61,24 @@ impl Part {
         let path = target.with_file_name(part);
         let file = OpenOptions::new().write(true).create(true).truncate(true).open(&path)?;
         Ok(Part { path, file, kept: false })
+    }
+
+    /// The temporary name, for a library that opens files itself.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Hands the file out to be written to.
+    ///
+    /// # Errors
+    /// What the content returns, and the system.
+    pub(super) fn stream(
+        &mut self,
+        content: impl FnOnce(&mut BufWriter<File>) -> Result<(), Unwritten>,
+    ) -> Result<(), Unwritten> {
+        let mut out = BufWriter::with_capacity(BUFFER, self.file.try_clone()?);
+        content(&mut out)?;
+        Ok(out.flush()?)
     }
 
     fn rename(mut self, target: &Path) -> io::Result<()> {
@@ -105,14 +107,14 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("mesh.msh");
         fs::write(&path, "old").unwrap();
-        let failed = write_whole(&path, |out| {
-            out.write_all(b"half")?;
+        let failed = write(&path, |part| {
+            part.stream(|out| Ok(out.write_all(b"half")?))?;
             Err(Unwritten::Inexpressible("because".into()))
         });
         assert!(failed.is_err_and(|e| e.to_string().ends_with("mesh.msh: cannot be written: because")));
         assert_eq!(fs::read(&path).unwrap(), b"old");
         assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
-        write_whole(&path, |out| Ok(out.write_all(b"new")?)).unwrap();
+        write(&path, |part| part.stream(|out| Ok(out.write_all(b"new")?))).unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"new");
         assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
     }
@@ -120,7 +122,7 @@ mod tests {
     #[test]
     fn what_is_no_file_is_not_replaced() {
         let dir = tempfile::tempdir().unwrap();
-        assert!(write_whole(dir.path(), |_| Ok(())).is_err());
-        assert!(write_whole(&dir.path().join("none/mesh.msh"), |_| Ok(())).is_err());
+        assert!(write(dir.path(), |_| Ok(())).is_err());
+        assert!(write(&dir.path().join("none/mesh.msh"), |_| Ok(())).is_err());
     }
 }

@@ -13,7 +13,7 @@ use super::trace::Trace;
 use super::values::positive;
 use crate::associate::Choice;
 use crate::cli::exit::{DONE, GIVEN_UP, NOT_CERTIFIED, STOPPED};
-use crate::cli::form::Form;
+use crate::cli::form::{self, Form};
 use crate::cli::output::{Failure, print, write_json};
 use crate::curve::{Curved, Job, Settings};
 use crate::element::Order;
@@ -24,7 +24,7 @@ use crate::smooth;
 /// Options of `sagitta curve`.
 #[derive(Args)]
 pub(in crate::cli) struct Options {
-    /// The linear mesh: MSH, CGNS, UGRID, SU2, VTU, legacy VTK or PLOT3D
+    #[arg(help = form::mesh("The linear mesh"))]
     mesh: PathBuf,
     /// The CAD it was made on: STEP, IGES or BREP
     #[arg(long, value_name = "FILE")]
@@ -35,8 +35,7 @@ pub(in crate::cli) struct Options {
     /// Polynomial order of the curved mesh: 2, 3 or 4
     #[arg(long, value_name = "P", value_parser = order)]
     order: Order,
-    /// The curved mesh: .msh or .cgns for solvers, .vtu for pictures
-    #[arg(short, long, value_name = "OUT", required_unless_present = "dry_run")]
+    #[arg(short, long, value_name = "OUT", required_unless_present = "dry_run", help = form::output("The curved mesh"))]
     output: Option<PathBuf>,
     /// Tell what lies on what, and stop there
     #[arg(long)]

@@ -9,6 +9,7 @@ use super::reading::Reading;
 use super::values::positive;
 use crate::associate::{self, AssociateError, Candidates, Inference, Tolerance, associate, infer};
 use crate::cli::exit::DONE;
+use crate::cli::form;
 use crate::cli::output::{Failure, print, write_json};
 use crate::formats;
 use crate::mesh::{Boundary, Mesh};
@@ -20,7 +21,7 @@ const MAX_OFFSET: f64 = 1e-3;
 /// Options of `sagitta link`.
 #[derive(Args)]
 pub(in crate::cli) struct Options {
-    /// The linear mesh: MSH, CGNS, UGRID, SU2, VTU, legacy VTK or PLOT3D
+    #[arg(help = form::mesh("The linear mesh"))]
     mesh: PathBuf,
     /// The CAD it was made on: STEP, IGES or BREP
     #[arg(long, value_name = "FILE")]

@@ -16,17 +16,55 @@ mod tree;
 mod write;
 
 use std::os::unix::process::ExitStatusExt;
-use std::path::Path;
 use std::time::Duration;
 
 use cad::child::{ChildError, Limits, run};
 
+use super::detect::{Head, Refusal, Verdict};
+use super::format::{Format, Holds, Input, Reader, Writer};
 use super::{Error, ReadOptions};
+use crate::element::{Cell, Order};
 use crate::mesh::Mesh;
 
 pub use child::{READER_SUBCOMMAND, serve_reader};
 pub use fault::CgnsFault;
-pub(super) use write::write;
+
+/// CGNS on HDF5.
+pub(super) static FORMAT: Format = Format {
+    name: "CGNS",
+    endings: &["cgns"],
+    detect,
+    reader: Reader {
+        holds: Holds {
+            notes: "unstructured zones; one type a section or MIXED, with or without offsets; conditions by list, range, \
+                    vertices, family; zones joined",
+            ..HOLDS
+        },
+        read,
+    },
+    writer: Some(Writer {
+        holds: Holds {
+            notes: "one zone, one section a type; conditions, families, numbers of groups and entities (`Ordinal_t`)",
+            ..HOLDS
+        },
+        write: |part, mesh, _| write::write(part.path(), mesh),
+    }),
+};
+
+const HOLDS: Holds =
+    Holds { highest: Order::MAX, cells: &Cell::ALL, dimensions: &[2, 3], names: true, fields: false, notes: "" };
+
+fn detect(head: &Head) -> Verdict {
+    if head.bytes.starts_with(b"\x89HDF\r\n\x1a\n") {
+        return Verdict::ByContent;
+    }
+    if head.bytes.get(4..).is_some_and(|rest| rest.starts_with(b"ADF Database Version")) {
+        return Verdict::Refused(Refusal::unread(
+            "a CGNS file in the old ADF form; rewrite it as HDF5: adf2hdf IN.cgns OUT.cgns (Debian package cgns-convert)",
+        ));
+    }
+    Verdict::No
+}
 
 /// Address space of the child beside four times the file's length.
 const MEMORY: u64 = 1 << 30;
@@ -37,7 +75,8 @@ const SECONDS: u64 = 60;
 ///
 /// # Errors
 /// [`Error`]: also where the HDF5 library crashes or hangs, which happens to the child process only.
-pub(super) fn read(path: &Path, length: u64, options: &ReadOptions) -> Result<Mesh, Error> {
+fn read(input: Input, options: &ReadOptions) -> Result<Mesh, Error> {
+    let Input { path, length, .. } = input;
     let refused = |reason: String| Error::Format { file: path.to_path_buf(), reason };
     let limits = Limits {
         timeout: Duration::from_secs(SECONDS + length / 10_000_000),

@@ -20,7 +20,7 @@ use crate::mesh::{Block, EntityKey, Mesh, PhysicalName};
 const VERSION: f32 = 3.4;
 
 /// Writes a mesh. Equal meshes make equal bytes.
-pub(in crate::formats) fn write(path: &Path, mesh: &Mesh) -> Result<(), Unwritten> {
+pub(super) fn write(path: &Path, mesh: &Mesh) -> Result<(), Unwritten> {
     let file = hdf5::File::create(path)?;
     let root = Node::root(&file)?;
     root.array("CGNSLibraryVersion", labels::VERSION, &[1], &[VERSION])?;

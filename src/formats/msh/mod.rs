@@ -20,14 +20,35 @@ mod tests;
 
 use std::io::{BufRead, Write};
 
-use super::scanner::Scanner;
 use draft::Draft;
 use sink::{ByteSink, Sink, TextSink};
 use source::{Bytes, Text};
 
+use super::detect::Verdict;
 use super::error::{Fault, Flaw};
+use super::format::{Format, Holds, Reader, Writer};
 use super::output::Unwritten;
+use super::scanner::Scanner;
+use crate::element::{Cell, Order};
 use crate::mesh::Mesh;
+
+/// Gmsh's own format.
+pub(super) static FORMAT: Format = Format {
+    name: "Gmsh MSH",
+    endings: &["msh"],
+    detect: |head| if head.text.starts_with(b"$") { Verdict::ByContent } else { Verdict::No },
+    reader: Reader {
+        holds: Holds { notes: "4.1 and 2.2, text and binary", ..HOLDS },
+        read: |input, _| read(input.content, input.length).map_err(|flaw| flaw.of(input.path)),
+    },
+    writer: Some(Writer {
+        holds: Holds { notes: "4.1, `--msh-version 2.2`, `--ascii`", ..HOLDS },
+        write: |part, mesh, options| part.stream(|out| write(out, mesh, options.msh_version, options.msh_encoding)),
+    }),
+};
+
+const HOLDS: Holds =
+    Holds { highest: Order::MAX, cells: &Cell::ALL, dimensions: &[2, 3], names: true, fields: false, notes: "" };
 
 /// Versions of the format.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -202,12 +223,7 @@ fn end_section(scanner: &mut Scanner<impl BufRead>, section: &'static str) -> Re
 }
 
 /// Writes a mesh. Equal meshes make equal bytes.
-pub(super) fn write(
-    out: &mut (impl Write + Send),
-    mesh: &Mesh,
-    version: Version,
-    encoding: Encoding,
-) -> Result<(), Unwritten> {
+fn write(out: &mut (impl Write + Send), mesh: &Mesh, version: Version, encoding: Encoding) -> Result<(), Unwritten> {
     let number = if version == Version::V4_1 { "4.1" } else { "2.2" };
     let binary = encoding == Encoding::Binary;
     write!(out, "$MeshFormat\n{number} {} 8\n", u8::from(binary))?;

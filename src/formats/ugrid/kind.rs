@@ -8,11 +8,6 @@ use crate::formats::numbers::{Encoding, Layout};
 /// Bytes of the head that tell the kind: a record's length and seven long counts.
 const HEAD: usize = 4 + 7 * 8;
 
-/// Whether a file's name is that of a UGRID file.
-pub(in crate::formats) fn is_name(path: &Path) -> bool {
-    extension(path).is_some_and(|extension| matches!(extension.as_str(), "ugrid" | "ugrid64"))
-}
-
 fn extension(path: &Path) -> Option<String> {
     Some(path.extension()?.to_str()?.to_ascii_lowercase())
 }
@@ -21,7 +16,7 @@ fn extension(path: &Path) -> Option<String> {
 ///
 /// # Errors
 /// What to tell the user.
-pub(in crate::formats) fn encoding(path: &Path, head: &[u8], length: u64) -> Result<Encoding, String> {
+pub(super) fn encoding(path: &Path, head: &[u8], length: u64) -> Result<Encoding, String> {
     let stem = path.file_stem().map(Path::new);
     let word = stem.and_then(extension).unwrap_or_default();
     let long = extension(path).as_deref() == Some("ugrid64");

@@ -15,7 +15,7 @@ const PIECE: usize = 1 << 16;
 ///
 /// # Errors
 /// The first [`Fault`] and its place.
-pub(in crate::formats) fn read(input: impl BufRead, length: u64) -> Result<Mesh, Flaw> {
+pub(super) fn read(input: impl BufRead, length: u64) -> Result<Mesh, Flaw> {
     let mut scanner = Scanner::new(input, length);
     let line = scanner.full_line("the header")?;
     let version: f64 = line.rsplit(' ').next().and_then(|word| word.parse().ok()).unwrap_or(1.0);

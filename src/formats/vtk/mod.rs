@@ -7,6 +7,56 @@ mod legacy;
 mod write;
 mod xml;
 
-pub(super) use legacy::read as read_legacy;
-pub(super) use write::write;
-pub(super) use xml::read as read_xml;
+use super::detect::{Head, Refusal, Verdict};
+use super::format::{Format, Holds, Reader, Writer};
+use crate::element::{Cell, Order};
+
+/// VTK's XML form of unstructured grids.
+pub(super) static VTU: Format = Format {
+    name: "VTU",
+    endings: &["vtu"],
+    detect,
+    reader: Reader {
+        holds: Holds {
+            notes: "text, base64, appended raw and base64; zlib, LZ4, LZMA; Lagrange cells, pyramids of P1 only",
+            ..HOLDS
+        },
+        read: |input, _| {
+            let path = input.path;
+            xml::read(&input.whole()?).map_err(|flaw| flaw.of(path))
+        },
+    },
+    writer: Some(Writer {
+        holds: Holds {
+            fields: true,
+            notes: "Lagrange cells, appended raw; `--volume-only` for readers that refuse mixed dimensions; pyramids from \
+                    P2 on as degenerate hexes",
+            ..HOLDS
+        },
+        write: |part, mesh, options| part.stream(|out| write::write(out, mesh, options.fields, options.volume_only)),
+    }),
+};
+
+/// VTK's older form.
+pub(super) static LEGACY: Format = Format {
+    name: "legacy VTK",
+    endings: &["vtk"],
+    detect: |head| if head.text.starts_with(b"# vtk DataFile") { Verdict::ByContent } else { Verdict::No },
+    reader: Reader {
+        holds: Holds { notes: "text and binary, 2.0 to 5.1; pyramids of P1 only", ..HOLDS },
+        read: |input, _| legacy::read(input.content, input.length).map_err(|flaw| flaw.of(input.path)),
+    },
+    writer: None,
+};
+
+const HOLDS: Holds =
+    Holds { highest: Order::MAX, cells: &Cell::ALL, dimensions: &[2, 3], names: false, fields: false, notes: "" };
+
+fn detect(head: &Head) -> Verdict {
+    let text = String::from_utf8_lossy(head.text);
+    let Some((_, rest)) = text.split_once("<VTKFile").filter(|_| text.starts_with('<')) else { return Verdict::No };
+    match rest.split('>').next().is_some_and(|tag| tag.contains("\"UnstructuredGrid\"")) {
+        true => Verdict::ByContent,
+        false => Verdict::Refused(Refusal::unread("a VTK XML file, but of no UnstructuredGrid; save the mesh as VTU")),
+    }
+}

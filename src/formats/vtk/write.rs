@@ -20,12 +20,7 @@ use crate::mesh::{Block, Entity, EntityKey, Mesh};
 ///
 /// Besides the fields the cells carry `dimension`, `CellEntityIds` (the file's entity tag), and `patch` (the first
 /// physical tag of the entity, 0 where there is none).
-pub(in crate::formats) fn write(
-    out: &mut impl Write,
-    mesh: &Mesh,
-    fields: &[Field],
-    volume_only: bool,
-) -> Result<(), Unwritten> {
+pub(super) fn write(out: &mut impl Write, mesh: &Mesh, fields: &[Field], volume_only: bool) -> Result<(), Unwritten> {
     let grid = Grid::new(mesh, volume_only);
     grid.check(fields)?;
     let arrays = grid.arrays(fields);

@@ -17,7 +17,7 @@ use crate::mesh::Mesh;
 ///
 /// # Errors
 /// The first [`Fault`] and its place.
-pub(in crate::formats) fn read(content: &[u8]) -> Result<Mesh, Flaw> {
+pub(super) fn read(content: &[u8]) -> Result<Mesh, Flaw> {
     let (head, appended) = split(content)?;
     let mut file = File { appended, ..File::default() };
     file.parse(head)?;

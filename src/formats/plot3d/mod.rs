@@ -8,40 +8,54 @@ mod blocks;
 mod kind;
 
 use std::io::BufRead;
-use std::path::Path;
 
+use super::detect::Verdict;
 use super::error::{Error, Fault, Flaw};
+use super::format::{Format, Holds, Input, Reader};
 use super::numbers::{Encoding, Numbers};
+use crate::element::{Cell, Order};
 use crate::mesh::Mesh;
 use blocks::Block;
 use kind::Kind;
 
-/// Endings of names that PLOT3D grids go by.
-const NAMES: [&str; 9] = ["x", "xyz", "p3d", "p3dfmt", "p3dbin", "plot3d", "g", "grd", "gin"];
+/// Structured grids of many codes.
+pub(super) static FORMAT: Format = Format {
+    name: "PLOT3D",
+    endings: &["x", "xyz", "p3d", "p3dfmt", "p3dbin", "plot3d", "g", "grd", "gin"],
+    detect: |head| if FORMAT.is_name(head.path) { Verdict::ByName } else { Verdict::No },
+    reader: Reader {
+        holds: Holds {
+            highest: Order::LINEAR,
+            cells: &[Cell::Quad, Cell::Hex],
+            dimensions: &[3],
+            names: false,
+            fields: false,
+            notes: "blocks as hexes; text, C and Fortran binary of either byte order and precision, one or several blocks, iblank",
+        },
+        read,
+    },
+    writer: None,
+};
 
 /// A text may hold this many numbers for each of its bytes, where repeated ones are written once (`100*0.0`).
 const REPEATED: usize = 16;
 
-/// Whether a file's name is that of a PLOT3D grid.
-pub(super) fn is_name(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| NAMES.iter().any(|name| extension.eq_ignore_ascii_case(name)))
-}
-
-/// Reads a mesh from a file's content of `length` bytes, which begins with `head`.
+/// Reads a mesh.
 ///
 /// # Errors
 /// [`Error::Format`] where no way to write the numbers fits the length; [`Error::Content`].
-pub(super) fn read(input: impl BufRead, head: &[u8], path: &Path, length: u64) -> Result<Mesh, Error> {
+fn read(input: Input, _: &super::ReadOptions) -> Result<Mesh, Error> {
+    let Input { path, length, head, content } = input;
     let flaw = |flaw: Flaw| flaw.of(path);
     if head.iter().all(|byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace()) {
-        return text(&mut Numbers::new(input, length, Encoding::Text), head).map_err(flaw);
+        return text(&mut Numbers::new(content, length, Encoding::Text), &head).map_err(flaw);
     }
-    let Some(kind) = kind::of(head, length) else {
+    let Some(kind) = kind::of(&head, length) else {
         let reason = "its length fits no PLOT3D grid of three dimensions, single or double precision, with or without \
                       iblank, in C's or Fortran's records of either byte order: it is cut off, or no grid file";
         return Err(Error::Format { file: path.to_path_buf(), reason: reason.into() });
     };
-    binary(&mut Numbers::new(input, length, Encoding::Bytes(kind.layout)), kind).map_err(flaw)
+    binary(&mut Numbers::new(content, length, Encoding::Bytes(kind.layout)), kind).map_err(flaw)
 }
 
 fn binary(numbers: &mut Numbers<impl BufRead>, kind: Kind) -> Result<Mesh, Flaw> {

@@ -7,28 +7,56 @@ mod kind;
 mod mapbc;
 
 use std::io::BufRead;
-use std::path::Path;
 
 use glam::DVec3;
 
 use super::assembly::{Assembly, node_of};
+use super::detect::Verdict;
 use super::error::{Error, Fault, Flaw};
+use super::format::{Format, Holds, Input, Reader};
 use super::numbers::Numbers;
 use crate::element::order::FileOrder;
 use crate::element::{Cell, Order};
 use crate::mesh::{EntityKey, Mesh, NodeId};
 
-pub(super) use kind::{encoding, is_name};
+/// The format of AFLR3, FUN3D and others.
+pub(super) static FORMAT: Format = Format {
+    name: "UGRID",
+    endings: &["ugrid", "ugrid64"],
+    detect: |head| if FORMAT.is_name(head.path) { Verdict::ByName } else { Verdict::No },
+    reader: Reader {
+        holds: Holds {
+            highest: Order::LINEAR,
+            cells: &[Cell::Triangle, Cell::Quad, Cell::Tet, Cell::Pyramid, Cell::Prism, Cell::Hex],
+            dimensions: &[3],
+            names: true,
+            fields: false,
+            notes: "text, `b8`, `lb8`, `b4`, `lb4`, `r8`, `lr8`, `r4`, `lr4`, 64-bit kinds (`lb8l`, `.ugrid64`); names and \
+                    conditions from the `.mapbc` file beside it",
+        },
+        read: open,
+    },
+    writer: None,
+};
 
 /// The faces, then the volume cells, in file order.
 const FACES: [Cell; 2] = [Cell::Triangle, Cell::Quad];
 const CELLS: [Cell; 4] = [Cell::Tet, Cell::Pyramid, Cell::Prism, Cell::Hex];
 
-/// Reads a mesh from a file's content, in the encoding that [`encoding`] found.
+fn open(input: Input, _: &super::ReadOptions) -> Result<Mesh, Error> {
+    let Input { path, length, head, content } = input;
+    let encoding = kind::encoding(path, &head, length);
+    let encoding = encoding.map_err(|reason| Error::Format { file: path.to_path_buf(), reason })?;
+    let mut mesh = read(&mut Numbers::new(content, length, encoding)).map_err(|flaw| flaw.of(path))?;
+    mapbc::apply(&mut mesh, path)?;
+    Ok(mesh)
+}
+
+/// Reads a mesh from a file's content.
 ///
 /// # Errors
 /// The first [`Fault`] and its place. Memory stays within a small multiple of the file's length.
-pub(super) fn read(numbers: &mut Numbers<impl BufRead>) -> Result<Mesh, Flaw> {
+fn read(numbers: &mut Numbers<impl BufRead>) -> Result<Mesh, Flaw> {
     numbers.begin_record("the counts")?;
     let mut counts = [0; 7];
     for count in &mut counts {
@@ -95,12 +123,4 @@ fn connectivity(
         }
     }
     Ok(nodes)
-}
-
-/// Names the surfaces as the `.mapbc` file beside the mesh does, where there is one.
-///
-/// # Errors
-/// [`Error`] where it is damaged.
-pub(super) fn name_surfaces(mesh: &mut Mesh, path: &Path) -> Result<(), Error> {
-    mapbc::apply(mesh, path)
 }

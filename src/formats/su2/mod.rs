@@ -6,18 +6,49 @@ use std::io::BufRead;
 use glam::DVec3;
 
 use super::assembly::{Assembly, node_of};
+use super::detect::{Head, Verdict};
 use super::error::{Fault, Flaw};
+use super::format::{Format, Holds, Reader};
 use super::scanner::Scanner;
 use crate::element::order::FileOrder;
 use crate::element::type_code::{self, VtkType};
 use crate::element::{Cell, Order};
 use crate::mesh::{EntityKey, Mesh, NodeId};
 
+/// The native format of the solver SU2.
+pub(super) static FORMAT: Format = Format {
+    name: "SU2",
+    endings: &["su2"],
+    detect,
+    reader: Reader {
+        holds: Holds {
+            highest: Order::LINEAR,
+            cells: &Cell::ALL,
+            dimensions: &[2, 3],
+            names: true,
+            fields: false,
+            notes: "text; one zone",
+        },
+        read: |input, _| read(input.content, input.length).map_err(|flaw| flaw.of(input.path)),
+    },
+    writer: None,
+};
+
+/// Whether the first line that is no comment is SU2's.
+fn detect(head: &Head) -> Verdict {
+    let lines = head.lines();
+    let line = lines.iter().find(|line| !line.is_empty() && !line.starts_with('%'));
+    match line.and_then(|line| line.split_once('=')).map(|(key, _)| key.trim()) {
+        Some("NDIME" | "NZONE" | "IZONE" | "NELEM" | "NPOIN" | "NMARK" | "NPERIODIC") => Verdict::ByContent,
+        _ => Verdict::No,
+    }
+}
+
 /// Reads a mesh from a file's content of `length` bytes.
 ///
 /// # Errors
 /// The first [`Fault`] and its place. Memory stays within a small multiple of `length`.
-pub(super) fn read(input: impl BufRead, length: u64) -> Result<Mesh, Flaw> {
+fn read(input: impl BufRead, length: u64) -> Result<Mesh, Flaw> {
     let mut file = File {
         scanner: Scanner::new(input, length),
         dimension: 0,
