@@ -6,8 +6,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use sagitta::element::{Cell, Order, type_code};
-use sagitta::formats::msh::{Encoding, Version};
+use sagitta::element::{Cell, Order};
+use sagitta::formats::msh::{self, Encoding, Version};
 use sagitta::formats::{self, Field, Support, Values, WriteOptions};
 use sagitta::mesh::Mesh;
 use sagitta::mesh::elevate::elevate;
@@ -191,7 +191,7 @@ fn other_programs_find_the_same_in_what_is_written() {
 fn gmsh_counts(mesh: &Mesh) -> serde_json::Value {
     let mut counts = BTreeMap::new();
     for block in &mesh.blocks {
-        *counts.entry(type_code::gmsh(block.cell, mesh.order).to_string()).or_insert(0) += block.tags.len();
+        *counts.entry(msh::element_type(block.cell, mesh.order).to_string()).or_insert(0) += block.tags.len();
     }
     serde_json::to_value(counts).unwrap()
 }

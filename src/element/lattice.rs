@@ -55,13 +55,13 @@ fn build(cell: Cell, p: u8) -> Vec<[u8; 3]> {
 }
 
 /// The lattice point `step` of `p` from corner `a` to corner `b`.
-pub(super) fn between(cell: Cell, p: u8, step: u8, a: u8, b: u8) -> [u8; 3] {
+pub(crate) fn between(cell: Cell, p: u8, step: u8, a: u8, b: u8) -> [u8; 3] {
     let (from, to) = (cell.corners()[usize::from(a)], cell.corners()[usize::from(b)]);
     std::array::from_fn(|x| (p - step) * from[x] + step * to[x])
 }
 
 /// A face's lattice point `(i, j)` in the coordinates of the cell.
-pub(super) fn embed(cell: Cell, face: &Face, p: u8, [i, j, _]: [u8; 3]) -> [u8; 3] {
+pub(crate) fn embed(cell: Cell, face: &Face, p: u8, [i, j, _]: [u8; 3]) -> [u8; 3] {
     let corner = |q: usize| cell.corners()[usize::from(face.corners[q])].map(i16::from);
     let (origin, first, second) = (corner(0), corner(1), corner(face.corners.len() - 1));
     let [i, j] = [i16::from(i), i16::from(j)];
@@ -112,7 +112,8 @@ fn volume_interior(cell: Cell, p: u8) -> Vec<[u8; 3]> {
         .collect()
 }
 
-pub(super) fn shifted(nodes: Vec<[u8; 3]>, by: [u8; 3]) -> Vec<[u8; 3]> {
+/// Lattice points moved by a number of steps on each axis.
+pub(crate) fn shifted(nodes: Vec<[u8; 3]>, by: [u8; 3]) -> Vec<[u8; 3]> {
     nodes.into_iter().map(|at| std::array::from_fn(|x| at[x] + by[x])).collect()
 }
 

@@ -1,4 +1,4 @@
-//! One table of cells; lattice, basis, Bernstein nets, sub-elements and file orders are derived from it.
+//! One table of cells; lattice, basis, Bernstein nets, sub-elements and the formats' node orders are derived from it.
 //!
 //! Everything that depends on the kind of a cell lives below this module: the rest of the program asks a
 //! [`Cell`] for its lattice, its faces or its sample tables and loops over the answer.
@@ -10,15 +10,14 @@ pub mod derivative;
 mod extension;
 mod lattice;
 mod net;
-pub mod order;
 mod orientation;
 pub mod samples;
 mod subdivision;
-pub mod type_code;
 mod volume;
 
 pub use cell::{Cell, Face, Order, OrderOutOfRange};
 pub use extension::interior_extension;
+pub(crate) use lattice::{between, embed, shifted};
 pub use lattice::{edge_nodes, face_lattice, lattice};
 pub use net::Net;
 pub use orientation::{InteriorSlots, canonical, interior_count, interior_slots, interior_start, mirrored};

@@ -11,6 +11,7 @@ mod error;
 mod field;
 mod format;
 pub mod msh;
+mod node_order;
 mod numbers;
 mod output;
 mod plot3d;

@@ -13,6 +13,7 @@ mod node;
 mod read;
 mod sections;
 mod tree;
+mod type_code;
 mod write;
 
 use std::os::unix::process::ExitStatusExt;

@@ -3,7 +3,8 @@
 use super::fault::CgnsFault;
 use super::labels;
 use super::tree::{Ints, Tree};
-use crate::element::{Cell, Order, type_code};
+use super::type_code;
+use crate::element::{Cell, Order};
 use crate::formats::error::{Fault, Flaw};
 
 /// Element types that are no elements of a cell and order.
@@ -119,7 +120,7 @@ fn kind(code: i64) -> Result<(Cell, Order), CgnsFault> {
     match code {
         NODE => Ok((Cell::Point, Order::LINEAR)),
         NGON | NFACE => Err(CgnsFault::Polyhedra),
-        _ => i32::try_from(code).ok().and_then(type_code::from_cgns).ok_or(if (3..=LAST).contains(&code) {
+        _ => i32::try_from(code).ok().and_then(type_code::meaning).ok_or(if (3..=LAST).contains(&code) {
             CgnsFault::Incomplete(code)
         } else {
             CgnsFault::UnknownType(code)

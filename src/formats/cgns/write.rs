@@ -12,7 +12,8 @@ use hdf5_metno as hdf5;
 
 use super::labels;
 use super::node::{Data, LONGEST_NAME, Node};
-use crate::element::{Cell, type_code};
+use super::type_code;
+use crate::element::Cell;
 use crate::formats::output::Unwritten;
 use crate::mesh::{Block, EntityKey, Mesh, PhysicalName};
 
@@ -128,8 +129,8 @@ impl<'a> Layout<'a> {
 
     fn section<I: Index>(&self, zone: &Node, section: &Section) -> Result<(), Unwritten> {
         let order = self.mesh.order;
-        let code = type_code::cgns(section.cell, order);
-        let name = type_code::cgns_name(section.cell, order);
+        let code = type_code::of(section.cell, order);
+        let name = type_code::name(section.cell, order);
         let node = zone.array(&name, labels::ELEMENTS, &[2], &[code, 0])?;
         let range = [section.first, section.first + section.count - 1].map(I::of);
         node.array("ElementRange", labels::RANGE, &[2], &range)?;

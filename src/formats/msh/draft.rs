@@ -4,10 +4,10 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
+use super::node_order::ORDER;
 use super::node_tags::NodeTags;
 use super::source::Source;
-use crate::element::order::FileOrder;
-use crate::element::type_code::{self, GmshType};
+use super::type_code::{self, Type};
 use crate::element::{Cell, Order};
 use crate::formats::error::{Fault, Flaw};
 use crate::mesh::{Block, EntityKey, Mesh, NodeId};
@@ -96,13 +96,13 @@ impl Draft {
 
     /// The element that a Gmsh number means; fixes the order of the mesh, or compares with it.
     pub(super) fn element_type(&mut self, source: &impl Source, code: i32) -> Result<ElementType, Flaw> {
-        let (cell, order) = match type_code::from_gmsh(code) {
-            Some(GmshType::Complete(cell, order)) => (cell, order),
-            Some(GmshType::Incomplete) => return Err(source.flaw(Fault::IncompleteElementType(code))),
-            Some(GmshType::TooHigh) => return Err(source.flaw(Fault::OrderTooHigh(code))),
+        let (cell, order) = match type_code::meaning(code) {
+            Some(Type::Complete(cell, order)) => (cell, order),
+            Some(Type::Incomplete) => return Err(source.flaw(Fault::IncompleteElementType(code))),
+            Some(Type::TooHigh) => return Err(source.flaw(Fault::OrderTooHigh(code))),
             None => return Err(source.flaw(Fault::UnknownElementType(code))),
         };
-        let slots = FileOrder::Gmsh.slots(cell, order).unwrap_or_default();
+        let slots = ORDER.slots(cell, order).unwrap_or_default();
         if cell != Cell::Point {
             let mesh = *self.order.get_or_insert(order);
             if mesh != order {

@@ -6,12 +6,14 @@
 
 mod draft;
 mod names;
+mod node_order;
 mod node_tags;
 mod outline;
 mod read22;
 mod read41;
 mod sink;
 mod source;
+mod type_code;
 mod write22;
 mod write41;
 
@@ -31,6 +33,8 @@ use super::output::Unwritten;
 use super::scanner::Scanner;
 use crate::element::{Cell, Order};
 use crate::mesh::Mesh;
+
+pub use type_code::of as element_type;
 
 /// Gmsh's own format.
 pub(super) static FORMAT: Format = Format {

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use super::sink::Sink;
+use super::type_code;
 use super::write41::slots;
-use crate::element::type_code;
 use crate::formats::output::Unwritten;
 use crate::mesh::{Block, Entity, EntityKey, Mesh};
 
@@ -55,7 +55,7 @@ fn elements<S: Sink>(sink: &mut S, mesh: &Mesh) -> Result<(), Unwritten> {
     for (block, groups) in mesh.blocks.iter().zip(&groups) {
         let slots = slots(mesh, block)?;
         for (n, &group) in groups.iter().enumerate() {
-            let head = [type_code::gmsh(block.cell, mesh.order), int(block.tags.len() as u64)?, 2];
+            let head = [type_code::of(block.cell, mesh.order), int(block.tags.len() as u64)?, 2];
             if S::BINARY && !block.tags.is_empty() {
                 head.iter().try_for_each(|&value| sink.int(value))?;
             }

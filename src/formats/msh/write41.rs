@@ -2,10 +2,10 @@
 
 use std::io;
 
+use super::node_order::ORDER;
 use super::outline::Outline;
 use super::sink::Sink;
-use crate::element::order::FileOrder;
-use crate::element::type_code;
+use super::type_code;
 use crate::formats::output::Unwritten;
 use crate::mesh::Mesh;
 
@@ -82,7 +82,7 @@ fn elements(sink: &mut impl Sink, mesh: &Mesh, outline: &Outline) -> Result<(), 
         let slots = slots(mesh, block)?;
         sink.int(i32::from(entity.dimension))?;
         sink.int(entity.tag)?;
-        sink.int(type_code::gmsh(block.cell, mesh.order))?;
+        sink.int(type_code::of(block.cell, mesh.order))?;
         sink.size(block.tags.len() as u64)?;
         sink.end_line()?;
         let stride = block.stride(mesh.order);
@@ -99,7 +99,7 @@ fn elements(sink: &mut impl Sink, mesh: &Mesh, outline: &Outline) -> Result<(), 
 /// Gmsh's node order for a block.
 pub(super) fn slots(mesh: &Mesh, block: &crate::mesh::Block) -> Result<&'static [u8], Unwritten> {
     let missing = || Unwritten::Inexpressible(format!("MSH has no {} of {}", block.cell, mesh.order));
-    FileOrder::Gmsh.slots(block.cell, mesh.order).ok_or_else(missing)
+    ORDER.slots(block.cell, mesh.order).ok_or_else(missing)
 }
 
 fn periodic(sink: &mut impl Sink, mesh: &Mesh) -> io::Result<()> {

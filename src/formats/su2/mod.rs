@@ -10,8 +10,8 @@ use super::detect::{Head, Verdict};
 use super::error::{Fault, Flaw};
 use super::format::{Format, Holds, Reader};
 use super::scanner::Scanner;
-use crate::element::order::FileOrder;
-use crate::element::type_code::{self, VtkType};
+use super::vtk::node_order::ORDER;
+use super::vtk::type_code::{self, Type};
 use crate::element::{Cell, Order};
 use crate::mesh::{EntityKey, Mesh, NodeId};
 
@@ -203,7 +203,7 @@ impl<R: BufRead> File<R> {
         let mut words = line.split_whitespace();
         let code = number(words.next())?;
         let known = Cell::ALL.into_iter().find(|cell| {
-            matches!(type_code::from_vtk(code, cell.corner_count()), VtkType::Complete(c, Order::LINEAR) if c == *cell)
+            matches!(type_code::meaning(code, cell.corner_count()), Type::Complete(c, Order::LINEAR) if c == *cell)
         });
         let Some(cell) = known else {
             return Err(self.flaw(Fault::UnknownElementType(i32::try_from(code).unwrap_or(i32::MAX))));
@@ -224,7 +224,7 @@ impl<R: BufRead> File<R> {
         let mut assembly = Assembly::new(points).map_err(flaw)?;
         let mut nodes: Vec<NodeId> = Vec::new();
         let mut push = |assembly: &mut Assembly, element: &Element, entity: EntityKey, by: u64| {
-            let slots = FileOrder::Vtk.slots(element.cell, Order::LINEAR).unwrap_or_default();
+            let slots = ORDER.slots(element.cell, Order::LINEAR).unwrap_or_default();
             nodes.clear();
             for &slot in slots {
                 nodes.push(node_of(count, element.nodes[usize::from(slot)], 0, by)?);

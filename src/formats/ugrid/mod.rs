@@ -14,8 +14,8 @@ use super::assembly::{Assembly, node_of};
 use super::detect::Verdict;
 use super::error::{Error, Fault, Flaw};
 use super::format::{Format, Holds, Input, Reader};
+use super::node_order::NodeOrder;
 use super::numbers::Numbers;
-use crate::element::order::FileOrder;
 use crate::element::{Cell, Order};
 use crate::mesh::{EntityKey, Mesh, NodeId};
 
@@ -38,6 +38,13 @@ pub(super) static FORMAT: Format = Format {
     },
     writer: None,
 };
+
+/// UGRID's node order, of linear elements only. A pyramid's nodes 1, 4, 5, 2 go round the base, and 3 is the apex.
+static ORDER: NodeOrder = NodeOrder::new(|cell, order| match cell {
+    _ if order > Order::LINEAR => None,
+    Cell::Pyramid => Some(vec![0, 3, 4, 1, 2]),
+    _ => Some((0..cell.corner_count() as u8).collect()),
+});
 
 /// The faces, then the volume cells, in file order.
 const FACES: [Cell; 2] = [Cell::Triangle, Cell::Quad];
@@ -113,7 +120,7 @@ fn connectivity(
     cell: Cell,
     count: i64,
 ) -> Result<Vec<NodeId>, Flaw> {
-    let slots = FileOrder::Ugrid.slots(cell, Order::LINEAR).unwrap_or_default();
+    let slots = ORDER.slots(cell, Order::LINEAR).unwrap_or_default();
     let count = numbers.checked(count, "elements", slots.len() as u64, 0)?;
     let mut nodes = vec![NodeId::default(); count * slots.len()];
     for (element, nodes) in (1..).zip(nodes.chunks_exact_mut(slots.len())) {

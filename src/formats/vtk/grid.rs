@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use crate::element::order::FileOrder;
-use crate::element::type_code::{self, VtkType};
+use super::node_order::{BEFORE_21, ORDER};
+use super::type_code::{self, Type};
 use crate::formats::assembly::{Assembly, node_of};
 use crate::formats::error::Fault;
 use crate::mesh::{EntityKey, Mesh, NodeId};
@@ -84,14 +84,14 @@ impl Grid {
         tag: u64,
         nodes: &mut Vec<NodeId>,
     ) -> Result<crate::element::Cell, Fault> {
-        let (cell, order) = match type_code::from_vtk(code, numbers.len()) {
-            VtkType::Complete(cell, order) => (cell, order),
-            VtkType::Incomplete => return Err(Fault::IncompleteCell { tag, code }),
-            VtkType::Count => return Err(Fault::CellNodes { tag, code, found: numbers.len() }),
-            VtkType::Unknown => return Err(Fault::UnknownCell { tag, code }),
+        let (cell, order) = match type_code::meaning(code, numbers.len()) {
+            Type::Complete(cell, order) => (cell, order),
+            Type::Incomplete => return Err(Fault::IncompleteCell { tag, code }),
+            Type::Count => return Err(Fault::CellNodes { tag, code, found: numbers.len() }),
+            Type::Unknown => return Err(Fault::UnknownCell { tag, code }),
         };
         assembly.set_order(cell, order)?;
-        let file_order = if self.old_hexes { FileOrder::VtkBefore21 } else { FileOrder::Vtk };
+        let file_order = if self.old_hexes { &BEFORE_21 } else { &ORDER };
         let slots = file_order.slots(cell, order).unwrap_or_default();
         nodes.clear();
         nodes.resize(numbers.len(), NodeId::default());

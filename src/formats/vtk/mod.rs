@@ -4,6 +4,8 @@ mod array;
 mod compressed;
 mod grid;
 mod legacy;
+pub(super) mod node_order;
+pub(super) mod type_code;
 mod write;
 mod xml;
 

@@ -9,8 +9,9 @@ use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use crate::element::order::{FileOrder, pyramid_as_hex};
-use crate::element::{Cell, Order, type_code};
+use super::node_order::{ORDER, pyramid_as_hex};
+use super::type_code;
+use crate::element::{Cell, Order};
 use crate::formats::field::{Field, Support, Values};
 use crate::formats::output::Unwritten;
 use crate::mesh::{Block, Entity, EntityKey, Mesh};
@@ -61,9 +62,9 @@ enum Shown {
 
 impl Shown {
     fn new(cell: Cell, order: Order) -> (u8, Shown) {
-        match (type_code::vtk(cell, order), FileOrder::Vtk.slots(cell, order)) {
+        match (type_code::of(cell, order), ORDER.slots(cell, order)) {
             (Some(vtk), Some(slots)) => (vtk, Shown::Slots(slots)),
-            _ => (type_code::VTK_LAGRANGE_HEX, Shown::Points(pyramid_as_hex(order))),
+            _ => (type_code::LAGRANGE_HEX, Shown::Points(pyramid_as_hex(order))),
         }
     }
 
