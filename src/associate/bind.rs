@@ -10,11 +10,11 @@ use super::sizes::{check_boxes, plane_through};
 use super::{AssociateError, Association, Candidate, Candidates, Classification, Curve, Plane, Surface};
 use crate::mesh::{Boundary, EntityKey, Mesh, NodeId};
 
-/// A point this near to a CAD entity lies on it; share of the model's diagonal.
+/// A point this near to a CAD entity lies on it; fraction of the model's diagonal.
 const ON_ENTITY: f64 = 1e-6;
-/// PeriodicConstraint a mesh to its CAD.
+/// Associates a mesh with its CAD.
 ///
-/// `max_offset`, a share of the mesh's box, is how far a point may be from an entity that a trusted source names.
+/// `max_offset`, a fraction of the mesh's bounding-box diagonal, is how far a point may be from an entity that a trusted source names.
 ///
 /// # Errors
 /// [`AssociateError`].
@@ -53,7 +53,7 @@ struct Binder<'a> {
     mesh: &'a Mesh,
     boundary: &'a Boundary,
     model: &'a Model,
-    /// How far a point may be from what it is tied to.
+    /// How far a point may be from what it is associated with.
     limit: f64,
     /// How far a point may be from what it *lies on*; grows with the offsets that the surfaces show.
     slack: f64,

@@ -8,7 +8,7 @@ use crate::mesh::{Boundary, EntityKey, Mesh};
 /// Patches by name: a physical name, `surface 3`, or `3`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Choice {
-    /// All that are tied to the CAD.
+    /// All that are associated with the CAD.
     #[default]
     All,
     /// Of those, these only.

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::mesh::{Boundary, Mesh};
 
-/// An inference is used where at least this share of the faces of every patch that it periodic is decided.
+/// An inference is used where at least this fraction of the faces of every patch that it covers is decided.
 const DECIDED: f64 = 0.9;
 
 /// Candidates, held against the CAD, and where they come from.
@@ -17,7 +17,7 @@ pub struct Classified {
     pub candidates: Candidates,
     /// The association that they make.
     pub association: Association,
-    /// What was inferred, where neither a linkage file nor tags told.
+    /// What was inferred, where neither a linkage file nor tags said it.
     pub inference: Option<Inference>,
     /// Where they come from, for people.
     pub source: String,
@@ -41,7 +41,7 @@ pub enum ClassifyError {
 /// the CAD. `max_offset` is that of [`associate`].
 ///
 /// # Errors
-/// [`ClassifyError`]; where tags do not hold and geometry does not tell either, what is wrong with the tags.
+/// [`ClassifyError`]; where tags do not hold and geometry does not decide either, what is wrong with the tags.
 pub fn classify(
     linkage: Option<&Linkage>,
     mesh: &Mesh,

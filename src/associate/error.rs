@@ -1,4 +1,4 @@
-//! Why a mesh could not be tied to its CAD.
+//! Why a mesh could not be associated with its CAD.
 
 use glam::DVec3;
 

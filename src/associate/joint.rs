@@ -7,7 +7,7 @@ use glam::DVec3;
 
 /// Places along an edge at which its angle is measured, as shares of its parameter range.
 const STATIONS: [f64; 3] = [0.1, 0.5, 0.9];
-/// Length of the step off an edge that tells on which side a face lies; share of the edge's box.
+/// Length of the step off an edge that decides on which side a face lies; fraction of the edge's bounding-box diagonal.
 const STEP: f64 = 1e-3;
 /// Faces whose tangent planes turn by more over an edge meet in a sharp edge (radians, 15 degrees).
 pub const SHARP: f64 = 0.26;

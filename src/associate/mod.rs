@@ -102,7 +102,7 @@ pub enum Classification {
     Straight,
 }
 
-/// The mesh tied to the CAD.
+/// The mesh associated with the CAD.
 #[derive(Debug, Default)]
 pub struct Association {
     /// CAD faces with mesh faces on them.
@@ -117,7 +117,7 @@ pub struct Association {
     pub faces: Vec<Classification>,
     /// Classification of the inner nodes of every boundary edge, by index in [`Boundary::edges`].
     pub edges: Vec<Classification>,
-    /// What a user should know and need not mend.
+    /// What a user should know and need not fix.
     pub notes: Vec<String>,
 }
 

@@ -43,7 +43,7 @@ pub fn periodic_sheets<'a>(pair: &ElementPair<'a>, resolution: &Resolution<'a>) 
     Some([in_model(pair.source)?, in_model(pair.target)?]).filter(|_| is_periodic)
 }
 
-/// The pairs of mesh entities that a pair of sheets makes; `node` tells what an index means in a model.
+/// The pairs of mesh entities that a pair of sheets makes; `node` says what an index means in a model.
 ///
 /// # Errors
 /// [`NotPeriodic`].

@@ -20,7 +20,7 @@ pub(super) fn plane_through(points: &[DVec3], slack: f64) -> Option<Plane> {
     points.iter().all(|&p| plane.closest(p).distance(p) <= slack).then_some(plane)
 }
 
-/// Refuses a CAD of another size or at another place than what is tied to it.
+/// Refuses a CAD of another size or at another place than what is associated with it.
 pub fn check_boxes(
     mesh: &Mesh,
     boundary: &Boundary,

@@ -70,8 +70,8 @@ impl Walls {
     }
 }
 
-/// Judges the faces with the given numbers; `face` reads them, and `other` tells a vector that a face that leans far may be held
-/// against. The result does not depend on the number of threads.
+/// Judges the faces with the given numbers; `face` reads them, and `other` gives a vector that a face that leans far may be compared
+/// with. The result does not depend on the number of threads.
 #[must_use]
 pub fn walls(
     numbers: &[usize],

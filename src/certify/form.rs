@@ -9,28 +9,28 @@ use crate::element::{Cell, Net, Order};
 pub(super) struct Form {
     /// Number of coefficients of the net that the product fills.
     pub(super) product: usize,
-    /// Corners of the product's net: coefficient, point of the chart.
+    /// Corners of the product's net: coefficient, and point in reference coordinates.
     pub(super) ends: Vec<(u16, [f64; 3])>,
-    /// From the product's net to the chart's, where they differ (pyramids).
+    /// From the product's net to the one that is halved, where they differ (pyramids).
     pub(super) raise: Option<Means>,
     /// From the Jacobian net of the linear element to the product's net.
     pub(super) from_linear: Means,
-    /// Number of coefficients of the net on the chart.
+    /// Number of coefficients of the net that is halved.
     pub(super) size: usize,
-    /// Coefficients of the chart's corners.
+    /// Coefficients at the corners.
     pub(super) corners: Vec<u16>,
-    /// The ways to halve the chart.
+    /// The ways to halve the cell.
     pub(super) directions: Vec<Direction>,
     /// The largest degree along a line.
     pub(super) degree: usize,
 }
 
-/// A family of parallel edges of the chart, to be bisected together.
+/// A family of parallel edges of the cell, to be bisected together.
 #[derive(Debug)]
 pub(super) struct Direction {
     /// Bundles of lines of equal length.
     pub(super) bundles: Vec<Bundle>,
-    /// Corners of the chart at the beginning and the end of each parallel edge.
+    /// Corners at the beginning and the end of each parallel edge.
     pub(super) edges: Vec<[u8; 2]>,
 }
 

@@ -4,7 +4,7 @@
 //! bounds as tight as need be, and all rounding is bounded, so that a verdict is a theorem about the coordinates as
 //! they stand in `f64`. Only [`crate::element`] is used: the judge shares no sample points and no cost with the smoother.
 //!
-//! For the pyramid the determinant is that of `(X_a / s, X_b / s, X_c)` on the closed cube of its chart `(a, b, c)`,
+//! For the pyramid the determinant is that of `(X_a / s, X_b / s, X_c)` on the closed cube of its reference coordinates `(a, b, c)`,
 //! `s = 1 - c`: at the apex it depends on the direction, and all directions count.
 
 mod certificate;

@@ -20,7 +20,7 @@ impl Dense {
         Dense::at(cell, order, points)
     }
 
-    /// At given points of the chart.
+    /// At given points in reference coordinates.
     pub(super) fn at(cell: Cell, order: Order, points: Vec<[f64; 3]>) -> Dense {
         Dense { cell, order, tables: [order, Order::LINEAR].map(|order| Samples::new(cell, order, points.clone())) }
     }

@@ -67,7 +67,7 @@ struct Piece {
     range: Range,
     slot: usize,
     halvings: usize,
-    /// Order of creation, to break periodic.
+    /// Order of creation, to break ties.
     serial: usize,
 }
 
@@ -139,7 +139,7 @@ impl Search {
         self.outcome(task, &gathered, settings)
     }
 
-    /// Puts the root on the chart and opens it.
+    /// Raises the root to the net that is halved, and opens it.
     fn begin(&mut self, task: &Task, root: &[f64], gathered: &mut Gathered) {
         let form = task.form;
         self.piece.clear();

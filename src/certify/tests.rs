@@ -28,7 +28,7 @@ impl Random {
         DVec3::new(self.unit(), self.unit(), self.unit()) * 2.0 - 1.0
     }
 
-    /// A point of a cell's chart, often on its boundary.
+    /// A point of a cell in reference coordinates, often on its boundary.
     pub(super) fn inside(&mut self, cell: Cell) -> [f64; 3] {
         let mut at = [self.unit(), self.unit(), self.unit()];
         if self.unit() < 0.3 {
@@ -64,7 +64,7 @@ pub(super) fn unit_corners(cell: Cell) -> Vec<DVec3> {
     cell.corners().iter().map(|c| DVec3::from(c.map(f64::from))).collect()
 }
 
-/// The Jacobian determinant at a point of the chart, by the basis functions' gradients.
+/// The Jacobian determinant at a point in reference coordinates, by the basis functions' gradients.
 pub(super) fn jacobian(cell: Cell, order: Order, points: &[DVec3], at: [f64; 3]) -> f64 {
     let mut columns = [DVec3::ZERO; 3];
     for (slopes, &x) in basis::gradients(cell, order, at).into_iter().zip(points) {
@@ -83,7 +83,7 @@ fn each() -> impl Iterator<Item = (Cell, Order)> {
     Cell::VOLUME.into_iter().flat_map(|cell| Order::all().map(move |order| (cell, order)))
 }
 
-/// Value of a Bernstein polynomial of a net at a point of the chart.
+/// Value of a Bernstein polynomial of a net at a point in reference coordinates.
 fn polynomial(net: Net, index: [usize; 3], at: [f64; 3]) -> f64 {
     let power = |x: f64, n: usize| x.powi(n as i32);
     let pair = |n: usize, i: usize, x: f64| power(x, i) * power(1.0 - x, n - i);

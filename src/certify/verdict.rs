@@ -7,7 +7,7 @@ pub enum Verdict {
     Valid,
     /// Proven not positive at a point.
     Invalid {
-        /// The point, in the cell's chart (`element::bernstein`).
+        /// The point, in reference coordinates (`element::bernstein`).
         at: [f64; 3],
         /// The determinant there is at most this.
         value: f64,
@@ -32,7 +32,7 @@ pub struct Bounds {
     pub lower: f64,
     /// Some value is at most this.
     pub upper: f64,
-    /// Where, in the cell's chart.
+    /// Where, in reference coordinates.
     pub at: [f64; 3],
 }
 

@@ -23,7 +23,7 @@ pub fn to_bernstein(cell: Cell, order: Order) -> &'static [f64] {
     })
 }
 
-/// Values of the Lagrange functions at a point of the cell's chart, in node order.
+/// Values of the Lagrange functions at a point in reference coordinates, in node order.
 #[must_use]
 pub fn values(cell: Cell, order: Order, at: [f64; 3]) -> Vec<f64> {
     let net = to_bernstein(cell, order);
@@ -40,7 +40,7 @@ pub fn at_lattice(cell: Cell, order: Order, lattice_order: Order) -> Vec<Vec<f64
     nodes.map(|node| values(cell, order, bernstein::chart(cell, unit(node)))).collect()
 }
 
-/// Derivatives of the Lagrange functions by the coordinates of the unit cell, at a point of the cell's chart.
+/// Derivatives of the Lagrange functions by the coordinates of the unit cell, at a point in reference coordinates.
 #[must_use]
 pub fn gradients(cell: Cell, order: Order, at: [f64; 3]) -> Vec<[f64; 3]> {
     let net = to_bernstein(cell, order);

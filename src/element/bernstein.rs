@@ -1,19 +1,20 @@
 //! Bernstein polynomials of every cell, indexed like the cell's lattice.
 //!
-//! A point of a cell is given by its *chart* coordinates: the unit cell's own for all cells but the pyramid, whose
-//! chart is the cube `(a, b, c)` with `x = a(1-c), y = b(1-c), z = c`. There the pyramid's basis
+//! A point of a cell is given by its *reference coordinates*: the unit cell's own for all cells but the pyramid, for
+//! which they run over the cube `(a, b, c)` with `x = a(1-c), y = b(1-c), z = c`. There the pyramid's basis
 //! `B^p_m(s) B^m_i(a) B^m_j(b)`, `s = 1-c`, spans the rational pyramid space, and the derivatives returned by
 //! [`gradients`] are polynomials, finite at the apex too (`docs/theory.md`, section 7).
 
 use super::{Cell, Order, lattice};
 
-/// Values of all Bernstein polynomials of a cell at a point of its chart, in lattice order.
+/// Values of all Bernstein polynomials of a cell at a point in reference coordinates, in lattice order.
 #[must_use]
 pub fn values(cell: Cell, order: Order, at: [f64; 3]) -> Vec<f64> {
     terms(cell, order, at).into_iter().map(|t| t.value).collect()
 }
 
-/// Derivatives of all Bernstein polynomials by the coordinates of the unit cell, at a point of its chart.
+/// Derivatives of all Bernstein polynomials by the coordinates of the unit cell, at a point in reference
+/// coordinates.
 #[must_use]
 pub fn gradients(cell: Cell, order: Order, at: [f64; 3]) -> Vec<[f64; 3]> {
     terms(cell, order, at).into_iter().map(|t| t.gradient).collect()
@@ -126,14 +127,14 @@ pub(super) fn binomial(n: usize, i: usize) -> f64 {
 mod tests {
     use super::*;
 
-    /// Points inside a cell's chart, away from symmetry.
+    /// Points inside a cell, in reference coordinates, away from symmetry.
     fn inside(cell: Cell) -> Vec<[f64; 3]> {
         let points = [[0.21, 0.13, 0.34], [0.05, 0.62, 0.11], [0.30, 0.27, 0.40]];
         let live = |axis: usize, x: f64| if axis < cell.dimension() { x } else { 0.0 };
         points.iter().map(|at| std::array::from_fn(|axis| live(axis, at[axis]))).collect()
     }
 
-    /// The unit cell's point at a chart point.
+    /// The unit cell's point at reference coordinates.
     fn unit(cell: Cell, [a, b, c]: [f64; 3]) -> [f64; 3] {
         if cell == Cell::Pyramid { [a * (1.0 - c), b * (1.0 - c), c] } else { [a, b, c] }
     }

@@ -1,9 +1,9 @@
 //! The columns of an element's Jacobian matrix as Bernstein nets, by exact integer combinations of its nodes.
 //!
-//! Columns by the axes of the unit cell: `p (c_(b + e) - c_b)` for a control net `c`. For the pyramid, in its chart
-//! with `s = 1 - c` and layers `x_m` (`docs/theory.md`, section 7): `X_a / s = p sum B^(p-1)_m(s) [Delta_a x_(m+1)]`,
+//! Columns by the axes of the unit cell: `p (c_(b + e) - c_b)` for a control net `c`. For the pyramid, in its reference
+//! coordinates with `s = 1 - c` and layers `x_m` (`docs/theory.md`, section 7): `X_a / s = p sum B^(p-1)_m(s) [Delta_a x_(m+1)]`,
 //! `X_b / s` likewise, `X_c = p sum B^(p-1)_m(s) [E x_m - x_(m+1)]` with the degree elevation `E`; their determinant is
-//! that of the Jacobian matrix, a polynomial of the chart up to and including the apex.
+//! that of the Jacobian matrix, a polynomial up to and including the apex.
 //!
 //! Triangles and quadrilaterals have two columns; the third is a constant vector, given as one more node after their own,
 //! so that the determinant is `(x_u x x_v) . m`.

@@ -7,7 +7,7 @@
 use super::bernstein::binomial;
 use super::{Cell, Order};
 
-/// A space of polynomials on a cell's chart, in Bernstein form.
+/// A space of polynomials of a cell's reference coordinates, in Bernstein form.
 ///
 /// Degrees by axis: simplices have one degree on all axes, prisms one on the first two. A pyramid's net is *layered*:
 /// with `s = 1 - c` its polynomials are `sum_m B^n_m(s) q_m(a, b)`, `q_m` of degrees `m + degree[0]` in `a` and
@@ -104,7 +104,7 @@ impl Net {
         }
     }
 
-    /// The corners of the chart (a pyramid's is the cube), each with the index of the coefficient that is the
+    /// The corners in reference coordinates (a pyramid's are those of the cube), each with the index of the coefficient that is the
     /// polynomial's value there.
     #[must_use]
     pub fn corners(self) -> Vec<([usize; 3], [f64; 3])> {
@@ -117,13 +117,13 @@ impl Net {
         corners.map(|corner| (index(corner), corner.map(|x| x as f64))).collect()
     }
 
-    /// The cell whose unit cell is the chart.
+    /// The cell that the reference coordinates run over: the hex for a pyramid.
     #[must_use]
     pub fn chart(self) -> Cell {
         if self.cell == Cell::Pyramid { Cell::Hex } else { self.cell }
     }
 
-    /// The net on the chart that holds this net's polynomials: a pyramid's layers raised to one degree; others stay.
+    /// The net in reference coordinates that holds this net's polynomials: a pyramid's layers raised to one degree; others stay.
     #[must_use]
     pub fn on_chart(self) -> Net {
         let [p, q, n] = self.degree;

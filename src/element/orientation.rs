@@ -55,7 +55,7 @@ pub fn interior_slots(cell: Cell, order: Order, seen: [u8; 4]) -> Vec<usize> {
 /// [`interior_slots`] of one cell and order, for all ways in which its corners can be seen.
 #[derive(Clone, Debug)]
 pub struct InteriorSlots {
-    /// By the first two corners as they are seen: they tell the others.
+    /// By the first two corners as they are seen: they determine the others.
     known: [[Vec<usize>; 4]; 4],
 }
 

@@ -18,7 +18,7 @@ pub struct Samples {
 }
 
 impl Samples {
-    /// Tables for the given points of the cell's chart.
+    /// Tables for the given points, in reference coordinates.
     #[must_use]
     pub fn new(cell: Cell, order: Order, mut points: Vec<[f64; 3]>) -> Samples {
         let count = points.len();

@@ -20,7 +20,7 @@ const TASK: usize = 256;
 /// An elevated mesh and where its new nodes came from.
 #[derive(Clone, Debug)]
 pub struct Elevated {
-    /// The mesh of order p, every node at its straight place.
+    /// The mesh of order p, every node at its straight position.
     pub mesh: Mesh,
     /// Number of nodes of the linear mesh; they come first.
     pub linear_nodes: usize,
@@ -343,7 +343,7 @@ impl Builder {
         Ok(first)
     }
 
-    /// Puts all new nodes at their straight places.
+    /// Puts all new nodes at their straight positions.
     fn place(&mut self) {
         let points = &mut self.mesh.points;
         points.resize(self.mesh.node_tags.len(), DVec3::ZERO);

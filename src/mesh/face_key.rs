@@ -25,7 +25,7 @@ impl FaceKey {
         (FaceKey(key), order)
     }
 
-    /// The key of a face of an element with these nodes, by the places of its corners among them.
+    /// The key of a face of an element with these nodes, by the positions of its corners among them.
     #[must_use]
     pub(super) fn picked(nodes: &[NodeId], places: &[u8]) -> FaceKey {
         let mut corners = [NodeId::NONE; 4];

@@ -6,7 +6,7 @@ use rustc_hash::FxHashSet;
 
 use super::{Mesh, NodeId, Periodic};
 
-/// The linear nodes of a pair correspond if none is farther from its partner's image; share of the mesh's box.
+/// The linear nodes of a pair correspond if none is farther from its partner's image; fraction of the mesh's bounding-box diagonal.
 pub const CONGRUENT: f64 = 1e-6;
 
 /// The map from master to slave that the record gives, in whichever direction it takes the nodes onto one another; where it gives none, a

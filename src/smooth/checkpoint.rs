@@ -1,6 +1,6 @@
 //! A state of the smoothing between two rounds, as bytes.
 //!
-//! Costs are not kept: they follow from the places of the nodes.
+//! Costs are not kept: they follow from the positions of the nodes.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -20,7 +20,7 @@ pub struct Checkpoint<'a> {
     pub(super) sweeps: usize,
     /// Each volume element's survey.
     pub(super) density: Cow<'a, [u8]>,
-    /// Places of all nodes.
+    /// Positions of all nodes.
     pub(super) x: Cow<'a, [DVec3]>,
     /// Places in the best state so far, of the nodes that are elsewhere in it.
     pub(super) best: BTreeMap<u32, DVec3>,

@@ -19,9 +19,9 @@ use super::{Constraint, Freedom};
 const MEMORY: usize = 8;
 /// Share of the predicted decrease that a step must bring (Armijo).
 const SUFFICIENT: f64 = 1e-4;
-/// A line search gives up at this share of the full step.
+/// A line search gives up at this fraction of the full step.
 const SHORTEST: f64 = 1e-6;
-/// Eigenvalues of a block below this share of the largest count as zero.
+/// Eigenvalues of a block below this fraction of the largest count as zero.
 const FLAT: f64 = 1e-13;
 
 /// Lowers the objective by at most `sweeps` steps and returns their number; ends when a step gains less than the share

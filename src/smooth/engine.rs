@@ -9,7 +9,7 @@ pub enum Engine {
     /// Preconditioned L-BFGS on a smooth objective over the whole patch.
     #[default]
     QuasiNewton,
-    /// The paper's: each node up the gradient of its own cost, at most a share of the inscribed radius.
+    /// The paper's: each node up the gradient of its own cost, at most a fraction of the inscribed radius.
     Gradient,
 }
 

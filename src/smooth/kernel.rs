@@ -1,4 +1,4 @@
-//! One element's share of the objective, and of its gradient and Hessian blocks by each of its nodes.
+//! One element's contribution to the objective, and to its gradient and Hessian blocks by each of its nodes.
 
 use glam::{DMat3, DVec3};
 
@@ -47,7 +47,7 @@ impl Kernel {
         Kernel { cell, order, survey: Survey::new(cell, order, divisions) }
     }
 
-    /// The element's share of the objective.
+    /// The element's contribution to the objective.
     pub(super) fn value(&self, element: &Element, weights: &Weights, scratch: &mut Scratch) -> f64 {
         let mut value = self.shape_value(element, weights);
         if weights.jacobian > 0.0 && value.is_finite() {
@@ -61,7 +61,7 @@ impl Kernel {
         self.survey.c_jac(element.points, element.targets, scratch)
     }
 
-    /// The element's share of the objective; its derivatives are added to `nodes`.
+    /// The element's contribution to the objective; its derivatives are added to `nodes`.
     pub(super) fn derivatives(
         &self,
         element: &Element,

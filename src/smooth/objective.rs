@@ -56,7 +56,7 @@ impl Gathered {
 }
 
 impl Objective<'_> {
-    /// The objective at the places `x` of the patch's nodes.
+    /// The objective at the positions `x` of the patch's nodes.
     pub(super) fn value(&self, x: &[DVec3]) -> f64 {
         let mut values = vec![0.0; self.patch.elements.len()];
         for (run, kernel) in self.patch.runs.iter().zip(&self.kernels) {

@@ -37,7 +37,7 @@ pub(super) struct Patch {
     starts: Vec<u32>,
     /// Slots by node, rising.
     incident: Vec<u32>,
-    /// Straight places of the nodes.
+    /// Straight positions of the nodes.
     pub(super) targets: Vec<DVec3>,
 }
 

@@ -1,4 +1,4 @@
-//! The mesh as the smoother sees it: volume elements by number, their straight places, what each costs.
+//! The mesh as the smoother sees it: volume elements by number, their straight positions, what each costs.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -9,13 +9,13 @@ use crate::element::{Cell, Order};
 use crate::mesh::{Block, Mesh, NodeId};
 use crate::quality::{Cut, element_c_wcn};
 
-/// The volume elements of an elevated mesh and their unperturbed places.
+/// The volume elements of an elevated mesh and their unperturbed positions.
 pub struct Problem<'a> {
     pub(super) order: Order,
     blocks: Vec<&'a Block>,
     /// First element of each block, and the number of all elements.
     firsts: Vec<usize>,
-    /// The unperturbed place of every node.
+    /// The unperturbed position of every node.
     pub(super) straight: &'a [DVec3],
     /// Number of volume elements around each node.
     valence: Vec<u32>,
@@ -43,7 +43,7 @@ impl ElementCost {
 }
 
 impl<'a> Problem<'a> {
-    /// The volume elements of `mesh`; `straight` are the unperturbed places of its nodes.
+    /// The volume elements of `mesh`; `straight` are the unperturbed positions of its nodes.
     #[must_use]
     pub fn new(mesh: &'a Mesh, straight: &'a [DVec3]) -> Problem<'a> {
         let blocks: Vec<&Block> = mesh.blocks_of(3).map(|(_, block)| block).collect();
@@ -104,7 +104,7 @@ impl<'a> Problem<'a> {
         (0..self.element_count()).into_par_iter()
     }
 
-    /// Costs of the given elements at the places `x` of all nodes.
+    /// Costs of the given elements at the positions `x` of all nodes.
     pub(super) fn costs(
         &self,
         kernels: &Kernels,

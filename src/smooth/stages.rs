@@ -29,7 +29,7 @@ use crate::quality;
 
 /// A survey is too coarse for an element where it misses this much of its `C_JAC`.
 const BLIND: f64 = 0.01;
-/// A descent ends at a sweep that gains less than this share of the objective.
+/// A descent ends at a sweep that gains less than this fraction of the objective.
 const GAIN: f64 = 1e-4;
 /// Weight of the square of a sample's term: how much the worst samples count.
 const EMPHASIS: f64 = 20.0;
@@ -49,14 +49,14 @@ const FOCUS_RINGS: usize = 4;
 const LOOSENINGS: [f64; 2] = [30.0, 100.0];
 /// What a loosening must gain for its places to be kept: nodes that slide take the wall farther from the CAD.
 const WORTH: f64 = 0.02;
-/// Regularisation of an element's determinants, as a share of what the element is below [`LOW`] (after Garanzha et al.,
+/// Regularisation of an element's determinants, as a fraction of what the element is below [`LOW`] (after Garanzha et al.,
 /// doi:10.1145/3450626.3459847). Capped at 1, cylinder_bl at scale 0.5, P4, did not come out of J = -1.2 J_c.
 const REGULARISATION: f64 = 0.5;
 /// Regularisation of the elements around an inverted one, at most: enough for its nodes to pass, too little for many to follow it. With
 /// that of the worst for all, one element of the torus at scale 0.5, P3, at J = -12 J_c, took 237 others along.
 const AROUND: f64 = 0.1;
 
-/// Moves the nodes `x` of a perturbed mesh to better places, or goes on from a checkpoint of the same work; `watch` is told
+/// Moves the nodes `x` of a perturbed mesh to better positions, or goes on from a checkpoint of the same work; `watch` is called
 /// after every sweep and ends the work by returning false.
 pub fn smooth(
     problem: &Problem,

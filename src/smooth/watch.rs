@@ -1,4 +1,4 @@
-//! Who is told how the smoothing goes on.
+//! Who follows the smoothing.
 
 use glam::DVec3;
 

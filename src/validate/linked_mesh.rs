@@ -5,9 +5,9 @@ use linkage_schema::{Code, Findings, MeshModel, ModelLinks};
 use crate::associate::{Numbering, Part, Side};
 use crate::mesh::{Boundary, Mesh, NodeId};
 
-/// Less than this share of the linked faces in the mesh: it is another mesh, or the numbers count from elsewhere.
+/// Less than this fraction of the linked faces in the mesh: it is another mesh, or the numbers count from elsewhere.
 const OTHER: f64 = 0.5;
-/// At least this share of them in it after all numbers are moved by one: that is what is wrong.
+/// At least this fraction of them in it after all numbers are moved by one: that is what is wrong.
 const MOVED: f64 = 0.9;
 
 /// A mesh, and what the numbers of one model of a linkage file mean in it.

@@ -29,7 +29,7 @@ pub(super) fn check(linked: &LinkedMesh<'_>, models: &[&ModelLinks<'_>], finding
     }
 }
 
-/// Parameter vertices of points that the mesh does not have, where no faces or edges beside them tell.
+/// Parameter vertices of points that the mesh does not have, where no faces or edges beside them say so.
 fn vertices(linked: &LinkedMesh<'_>, links: &ModelLinks<'_>, findings: &mut Findings) {
     let sheets = links.sheets.iter().filter(|sheet| sheet.faces.is_empty()).flat_map(SheetLinks::parameters);
     let strings = links.strings.iter().filter(|string| string.edges.is_empty()).flat_map(StringLinks::parameters);

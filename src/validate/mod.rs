@@ -47,7 +47,7 @@ pub struct Job {
     pub mesh: Option<PathBuf>,
     /// The CAD that it speaks of.
     pub cad: Option<PathBuf>,
-    /// How far a linked point may be from its CAD entity, in the mesh's unit. Default 1e-5 of the mesh's box.
+    /// How far a linked point may be from its CAD entity, in the mesh's unit. Default 1e-5 of the mesh's bounding-box diagonal.
     pub tolerance: Option<f64>,
     /// What the CAD is multiplied by; `None` finds the factor between units that fits.
     pub cad_scale: Option<f64>,
@@ -102,7 +102,7 @@ pub struct Validation {
     pub tolerance: Option<f64>,
 }
 
-/// A finding as it is told.
+/// A finding as it is reported.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Found {
     /// Its stable code.
@@ -115,12 +115,12 @@ pub struct Found {
     pub column: Option<u32>,
     /// What is wrong.
     pub message: String,
-    /// How to mend it.
+    /// How to fix it.
     pub remedy: &'static str,
 }
 
 impl Validation {
-    /// Whether there is nothing to mend; with `strict` notes count too.
+    /// Whether there is nothing to fix; with `strict` notes count too.
     #[must_use]
     pub fn is_clean(&self, strict: bool) -> bool {
         self.errors + self.warnings == 0 && (!strict || self.notes == 0)

@@ -11,7 +11,7 @@ use super::distances::group;
 use super::linked_mesh::LinkedMesh;
 use super::references::Geometry;
 
-/// Parametrisations match if at least this share of an entity's vertices evaluate to their points.
+/// Parametrisations match if at least this fraction of an entity's vertices evaluate to their points.
 const MATCH: f64 = 0.5;
 /// Vertices below which no factor and offset are sought.
 const ENOUGH: usize = 4;
@@ -80,7 +80,7 @@ fn misplaced<'a, 'b>(
     tolerance: f64,
 ) -> Option<Vec<(&'a ParamVertex, f64)>> {
     let group = group(model, &[entity])?.ok()?;
-    // A point off the CAD is told of otherwise, and has no parameters.
+    // A point off the CAD is reported otherwise, and has no parameters.
     let on_entity = |vertex: &'b Vertex<'a>| {
         let foot = group.closest(vertex.place, None);
         (foot.distance <= tolerance).then_some((vertex, foot))

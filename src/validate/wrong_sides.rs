@@ -12,7 +12,7 @@ use crate::associate::Joints;
 
 /// Cosine between the normals of a mesh face and its CAD face below which the one does not run along the other.
 const ALONG: f64 = 0.5;
-/// The volume is on one side of a shell if at least this share of the linked faces says so.
+/// The volume is on one side of a shell if at least this fraction of the linked faces says so.
 const ONE_SIDE: f64 = 0.9;
 
 /// A mesh face that runs along its CAD face, and on which side of that it has the volume.
@@ -107,7 +107,7 @@ pub(super) fn check(
     }
 }
 
-/// The CAD face at a mesh face's middle, and the cosine between their normals; `None` where the corners are off the CAD, which is told of
+/// The CAD face at a mesh face's middle, and the cosine between their normals; `None` where the corners are off the CAD, which is reported
 /// otherwise, or the surface has no normal.
 fn meeting(linked: &LinkedMesh<'_>, face: usize, group: &Group, tolerance: f64) -> Option<(FaceId, f64)> {
     let corners = linked.mesh.points_of(&linked.boundary.corners[face]);

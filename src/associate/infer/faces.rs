@@ -12,9 +12,9 @@ use crate::mesh::{Boundary, EntityKey, Mesh};
 
 /// A mesh face runs along a CAD face if the cosine between their normals is at least this.
 pub(super) const ALONG: f64 = 0.5;
-/// How far the middle of a mesh face may be from its CAD face; share of its longest edge.
+/// How far the middle of a mesh face may be from its CAD face; fraction of its longest edge.
 pub(super) const BULGE: f64 = 0.5;
-/// The volume is on one side of a CAD face if at least this share of the faces that tell is there.
+/// The volume is on one side of a CAD face if at least this fraction of the faces that show it are there.
 const ONE_SIDE: f64 = 0.9;
 
 /// A CAD face that a mesh face may lie on.
@@ -71,7 +71,7 @@ fn candidates(
     common.filter_map(fits).collect()
 }
 
-/// Strikes out candidates that have the volume on the other side, by what faces without a choice tell.
+/// Strikes out candidates that have the volume on the other side, by what faces without a choice show.
 fn strike_wrong_sides(candidates: &mut [Vec<FaceCandidate>]) {
     let mut told: BTreeMap<FaceId, [usize; 2]> = BTreeMap::new();
     for own in candidates.iter() {
@@ -94,7 +94,7 @@ fn strike_wrong_sides(candidates: &mut [Vec<FaceCandidate>]) {
     }
 }
 
-/// Lets decided faces tell their neighbours, until nothing changes.
+/// Lets decided faces decide their neighbours, until nothing changes.
 fn grow(boundary: &Boundary, joints: &Joints<'_>, along: &[Vec<EdgeId>], candidates: &mut [Vec<FaceCandidate>]) {
     let mut edges_of: Vec<Vec<usize>> = vec![Vec::new(); boundary.faces.len()];
     for (edge, faces) in boundary.edge_faces.iter().enumerate() {

@@ -11,7 +11,7 @@ use crate::associate::Joints;
 use crate::element::Order;
 use crate::mesh::{Boundary, Mesh, NodeId};
 
-/// The middle of a mesh edge may be this far from the CAD edge that it runs along; share of its length (an arc of 180 degrees has 0.5).
+/// The middle of a mesh edge may be this far from the CAD edge that it runs along; fraction of its length (an arc of 180 degrees has 0.5).
 const BULGE: f64 = 0.5;
 
 /// The CAD entities at every node of the mesh; nothing at nodes inside the volume.

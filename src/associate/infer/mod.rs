@@ -1,17 +1,17 @@
-//! The association where nobody tells it: by geometry, and by connectivity where geometry leaves a choice.
+//! The association where neither a linkage file nor tags give it: by geometry, and by connectivity where geometry leaves a choice.
 //!
 //! 1. **Incidence.** A node lies on every CAD face, edge and vertex within tolerance ([`Tolerance`]): well below the mesh's own size, so that the
 //!    first layer of nodes over a wall is not taken for the wall.
 //! 2. **Candidates.** A mesh face may lie on the CAD faces that hold all its corners, that run along it, and that its middle is near to.
-//! 3. **Sides.** Mesh faces with one candidate tell on which side of each CAD face the volume is. Candidates with the volume on the other side are
+//! 3. **Sides.** Mesh faces with one candidate show on which side of each CAD face the volume is. Candidates with the volume on the other side are
 //!    struck out: at a sharp edge both sides of a thin plate hold all corners of some faces.
 //! 4. **Growth.** A mesh face that still has a choice goes with a neighbour across a mesh edge that runs along no CAD edge, and not with one across
 //!    an edge of the neighbour's CAD face. Nearness never decides.
-//! 5. **SmoothGroups.** Faces whose corners no single CAD face holds, but several that go on smoothly in one another do, lie on these together.
+//! 5. **Smooth groups.** Faces whose corners no single CAD face holds, but several that go on smoothly in one another do, lie on these together.
 //! 6. **Edges and corners.** A mesh edge between faces on different CAD faces goes to the CAD edge of theirs that it runs along; a node at the vertex of such
 //!    an edge to that vertex.
 //!
-//! What is left is undecided: it is listed, and tied to nothing.
+//! What is left is undecided: it is listed, and associated with nothing.
 
 mod edges;
 mod faces;
@@ -24,9 +24,9 @@ use super::{Candidates, Joints, sides};
 use crate::mesh::{Boundary, Mesh};
 pub use incidence::Incidence;
 
-/// Default tolerance, as a share of the mesh's box.
+/// Default tolerance, as a fraction of the mesh's bounding-box diagonal.
 pub const ON_CAD: f64 = 1e-5;
-/// The tolerance where none is asked for stays below this share of the shortest mesh edge at a node.
+/// The tolerance where none is asked for stays below this fraction of the shortest mesh edge at a node.
 const OF_EDGE: f64 = 0.1;
 
 /// How far a node may be from a CAD entity that holds it.
@@ -37,7 +37,7 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
-    /// [`ON_CAD`] of the mesh's box, and at most a tenth of the shortest mesh edge at the node.
+    /// [`ON_CAD`] of the mesh's bounding-box diagonal, and at most a tenth of the shortest mesh edge at the node.
     #[must_use]
     pub fn of(mesh: &Mesh) -> Tolerance {
         let box_size = Aabb::of_points(mesh.points.iter().copied()).diagonal();
@@ -56,7 +56,7 @@ impl Tolerance {
     }
 }
 
-/// Why a face or edge is tied to nothing.
+/// Why a face or edge is associated with nothing.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Doubt {
     /// No CAD face holds any of its corners: the patch may not be part of the CAD.
@@ -65,7 +65,7 @@ pub enum Doubt {
     /// Each corner is on the CAD, but on no common face.
     #[error("its points are on the CAD, but no CAD face, nor faces that meet smoothly, hold them all and run along it")]
     NoCommonFace,
-    /// Several CAD faces hold it, and its neighbours do not tell which.
+    /// Several CAD faces hold it, and its neighbours do not decide which.
     #[error("it may lie on {}", list(.0))]
     SeveralFaces(Vec<FaceId>),
     /// It lies between faces on different CAD faces, but along none of their edges.
@@ -96,7 +96,7 @@ impl Inference {
     }
 }
 
-/// PeriodicConstraint the boundary to the CAD by geometry.
+/// Associates the boundary with the CAD by geometry.
 #[must_use]
 pub fn infer(mesh: &Mesh, boundary: &Boundary, model: &Model, tolerance: &Tolerance) -> Inference {
     let joints = Joints::new(model);

@@ -49,7 +49,7 @@ pub(super) struct Field<'a> {
     tree: BoxTree,
 }
 
-/// A place on the linear wall: a face and a point of its chart.
+/// A place on the linear wall: a face and a point of it in reference coordinates.
 #[derive(Clone, Copy)]
 struct Foot {
     face: usize,
@@ -163,7 +163,7 @@ impl<'a> Field<'a> {
     }
 }
 
-/// The closest point of a linear wall face, a quadrilateral taken as two triangles: chart coordinates and place.
+/// The closest point of a linear wall face, a quadrilateral taken as two triangles: reference coordinates and position.
 fn closest_on_face(face: &WallFace, points: &[DVec3], x: DVec3) -> ([f64; 3], DVec3) {
     let corners = face.corners();
     let at = |q: usize| points[corners[q].index()];
