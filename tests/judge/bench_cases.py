@@ -4,10 +4,10 @@
 usage: bench_cases.py SAGITTA CASES [--orders 2,3,4] [--only NAME,...] [--iges] [--peer] [--methods NAME,...]
                       [--certify] [--out FOLDER]
 
-CASES holds a folder a case, each with one NAME.msh, NAME.step (NAME.igs) and NAME.meshlink.xml, as make_cases.py of
-the project's plan writes them. `good` is the judge's verdict: topology kept, conforming, no invalid element at density
+CASES holds a folder a case, each with one NAME.msh, NAME.step (NAME.igs) and NAME.meshlink.xml, as fixtures/make_cases.py
+writes them. `good` is the judge's verdict: topology kept, conforming, no invalid element at density
 4p, wall no farther from the CAD than 1.2 times Gmsh's interpolation, wall nodes on the CAD, exit code 0, nothing
-given up. The certificate is ours (exit code 0 says that it holds); --certify lets the judge prove it too, in Python.
+off the CAD. The certificate is ours (exit code 0 says that it holds); --certify lets the judge prove it too, in Python.
 --peer curves the same meshes with Gmsh's own methods (at most 300 s each), or with those named.
 """
 import argparse
@@ -65,12 +65,12 @@ def baseline(case, order, judged):
     return BASELINES.setdefault((case, order), judged.get("boundary_dist_baseline", float("nan")))
 
 
-def row(case, order, by, code, seconds, peak, judged, given_up):
+def row(case, order, by, code, seconds, peak, judged, off_cad):
     if judged is None:
         return f"| {case} | P{order} | {by} | | | no | exit {code} | | | | {seconds:.1f} | {peak:.0f} |"
     near = judged["boundary_dist_max"] / baseline(case, order, judged)
     good = (judged["topology_kept"] and judged["conforming"] and judged["invalid_elements"] == 0 and near <= 1.2
-            and judged["wall_node_dist_max"] <= 1e-9 and code == 0 and not given_up
+            and judged["wall_node_dist_max"] <= 1e-9 and code == 0 and not off_cad
             and judged.get("certified") in (True, None))
     cells = ", ".join(f"{n} {cell}" for cell, n in judged["elements"].items())
     return (f"| {case} | P{order} | {by} | {cells} | {judged['nodes']} | {'yes' if good else 'no'} | "

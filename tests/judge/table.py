@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Curves the fixtures and prints the README's table: our seconds, the judge's figures (it shares no code with us).
+"""Curves the fixtures and prints a table: our seconds, the judge's figures (it shares no code with us).
 
 usage: table.py SAGITTA_BINARY        (from the repository's root; takes a few minutes, most of them the judge's)
 """
