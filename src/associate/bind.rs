@@ -1,4 +1,4 @@
-//! Candidates held against the CAD: groups are made, points must lie on them, and every boundary item gets its classification.
+//! Candidates checked against the CAD: groups are made, points must lie on them, and every boundary item gets its classification.
 
 use std::collections::BTreeSet;
 
@@ -90,7 +90,7 @@ impl Binder<'_> {
         Ok(())
     }
 
-    /// The surface of a sheet, its points held against it.
+    /// The surface of a sheet, its points checked against it.
     fn surface(&mut self, sheet: &Candidate<usize>, trusted: bool) -> Result<usize, AssociateError> {
         let mut entities = sheet.entities.clone();
         entities.sort_unstable();

@@ -1,4 +1,4 @@
-//! What a linkage file, or the tags of a mesh file, say about where mesh entities lie: not yet held against the CAD.
+//! What a linkage file, or the tags of a mesh file, say about where mesh entities lie: not yet checked against the CAD.
 
 use cad::{EdgeId, EntityId, FaceId, Model, VertexId};
 

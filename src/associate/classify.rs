@@ -10,7 +10,7 @@ use crate::mesh::{Boundary, Mesh};
 /// An inference is used where at least this fraction of the faces of every patch that it covers is decided.
 const DECIDED: f64 = 0.9;
 
-/// Candidates, held against the CAD, and where they come from.
+/// Candidates, checked against the CAD, and where they come from.
 #[derive(Debug)]
 pub struct Classified {
     /// The candidates.
@@ -37,7 +37,7 @@ pub enum ClassifyError {
 /// Classifies the boundary of a mesh on its CAD: by the linkage where there is one, else by entity tags where they are this CAD's, else
 /// by geometry.
 ///
-/// `choose` may strike out candidates before they are held against
+/// `choose` may strike out candidates before they are checked against
 /// the CAD. `max_offset` is that of [`associate`].
 ///
 /// # Errors

@@ -3,7 +3,7 @@
 //! ```text
 //!  MeshLink sheets, strings, points ─┐
 //!                                    ├─ candidates ── bind ──► surfaces, curves, classifications of the linear nodes
-//!  entity tags of the mesh file ─────┘            (held against the CAD: do the points lie there?)
+//!  entity tags of the mesh file ─────┘            (checked against the CAD: do the points lie there?)
 //! ```
 //!
 //! A number or tag (`face-3`, an entity tag) belongs to the CAD file that the linkage names or that the mesh was made on.

@@ -190,7 +190,7 @@ mod tests {
         }
     }
 
-    /// A face that lies flat and curls up at its end, to 141 degrees, where it leans by 103 degrees against its chord: held against
+    /// A face that lies flat and curls up at its end, to 141 degrees, where it leans by 103 degrees against its chord: compared with
     /// a vector between its ends' normals it is a graph. Where it curls on to 196 degrees, no vector makes it one.
     #[test]
     fn a_face_that_leans_far_is_held_against_another_vector() {

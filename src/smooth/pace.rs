@@ -7,7 +7,7 @@ use super::engine::Engine;
 const PROGRESS: f64 = 2e-3;
 /// Rings of neighbours that are activated around the elements below the threshold.
 pub(super) const RINGS: usize = 2;
-/// Most rings around elements as good as inverted that do not come out of it.
+/// Most rings around elements nearly inverted that do not come out of it.
 pub(super) const MOST_RINGS: usize = 8;
 /// Idle rounds after which a focused stage ends.
 pub(super) const PATIENCE: usize = 4;
@@ -27,7 +27,7 @@ pub(crate) struct Pace {
     pub(crate) stage: Stage,
     /// Rounds in a row that gained next to nothing.
     pub(crate) idle: usize,
-    /// Rings around elements as good as inverted.
+    /// Rings around elements nearly inverted.
     pub(crate) low_rings: usize,
     /// Whether the worst elements are worked on alone.
     pub(crate) focused: bool,

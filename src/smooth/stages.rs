@@ -33,7 +33,7 @@ const BLIND: f64 = 0.01;
 const GAIN: f64 = 1e-4;
 /// Weight of the square of a sample's term: how much the worst samples count.
 const EMPHASIS: f64 = 20.0;
-/// Below this cost an element is as good as inverted: the elements below it are worked on first, alone with their
+/// Below this cost an element is nearly inverted: the elements below it are worked on first, alone with their
 /// surroundings, and the barrier at `J = 0` is softened. A barrier that steep (`1/r^4` near `r = 0.004`) lets a few
 /// elements dictate the step of all others: wing_blunt at scale 0.4, P4, ended at C_JAC 0.008 after 200 sweeps, where it
 /// now ends at 0.59; the nozzle at scale 0.4, P4, did not come out of 17 inverted elements at all, and now ends at 0.81.

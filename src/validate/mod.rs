@@ -38,7 +38,7 @@ use references::Geometry;
 /// Name and version of the JSON document.
 pub const SCHEMA: &str = "sagitta-validation-2";
 
-/// What is to be held against what.
+/// What is to be checked against what.
 #[derive(Clone, Debug)]
 pub struct Job {
     /// The linkage file.
