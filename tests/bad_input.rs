@@ -265,7 +265,7 @@ fn tags_that_do_not_hold() {
         let of_patch = told.lines().find(|line| line.starts_with(patch)).unwrap_or_else(|| panic!("{told}"));
         assert!(of_patch.ends_with("  face:5 (45)"), "{told}");
         let outcome = sagitta(Input::mesh(&mesh).with(&["--max-sweeps", "5"]).arguments(&place.output()));
-        let note = "found by geometry, 0 faces and 0 edges undecided";
+        let note = "associated by geometry, with 0 faces and 0 edges undecided";
         assert!(outcome.stdout.contains(note), "{:?} {}{}", outcome.code, outcome.stdout, outcome.stderr);
         std::fs::remove_file(place.output()).unwrap();
     }
@@ -274,7 +274,7 @@ fn tags_that_do_not_hold() {
         mesh.blocks.iter_mut().filter(|block| block.entity.dimension == 2).for_each(|b| b.entity.tag += 100);
         mesh.points.iter_mut().for_each(|x| *x += glam::DVec3::splat(0.05));
     });
-    place.refuses(Input::mesh(lost), &["lost.msh", "cylinder_bl.step", "nothing of the mesh is tied"]);
+    place.refuses(Input::mesh(lost), &["lost.msh", "cylinder_bl.step", "no part of the mesh is associated"]);
 }
 
 #[test]

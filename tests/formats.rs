@@ -280,7 +280,7 @@ fn what_is_no_mesh_file_is_told() {
     };
     assert!(refused("empty.msh", b"").contains("the file is empty"));
     assert!(refused("part.msh", b"ISO-10303-21;\nHEADER;").contains("CAD, not a mesh"));
-    assert!(refused("grid.xml", b"<grid/>").contains("an XML file, but no VTU mesh"));
+    assert!(refused("grid.xml", b"<grid/>").contains("an XML file, but not a VTU mesh"));
     assert!(refused("noise.msh", &[0xff; 100]).contains("not a mesh file of a known format"));
     assert!(
         refused("old.msh", b"$MeshFormat\n4 0 8\n$EndMeshFormat\n")

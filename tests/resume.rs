@@ -60,7 +60,7 @@ fn order_by_order_too() {
         assert_eq!(gone_through.as_array().unwrap().len(), orders_below, "{gone_through}");
     }
     let direct = curve(&second, "3", "25", &["--direct", "--resume", text(&high)]);
-    assert_refused(&direct, &high, "belongs to other work");
+    assert_refused(&direct, &high, "belongs to another run");
 }
 
 /// What is not valid goes back towards the mesh of the order below, also where that was not made again.
@@ -114,8 +114,8 @@ fn what_is_no_checkpoint_of_this_work_is_refused() {
     flipped[good.len() / 2] ^= 1;
     let longer = [&good[..], &[0]].concat();
     let spoilt: [(&[u8], &str); 7] = [
-        (&[], "is no checkpoint"),
-        (b"$MeshFormat\n4.1 0 8\n$EndMeshFormat\n", "is no checkpoint"),
+        (&[], "is not a checkpoint"),
+        (b"$MeshFormat\n4.1 0 8\n$EndMeshFormat\n", "is not a checkpoint"),
         (&good[..30], "is damaged"),
         (&good[..good.len() / 2], "is damaged"),
         (&good[..good.len() - 1], "is damaged"),
@@ -129,7 +129,7 @@ fn what_is_no_checkpoint_of_this_work_is_refused() {
     }
     for more in [["--alpha", "0.5"], ["--survey-factor", "3"], ["--curve-layers", "5"]] {
         let resumed = curve(&out, "2", "45", &[&["--resume", text(&state)][..], &more].concat());
-        assert_refused(&resumed, &state, "belongs to other work");
+        assert_refused(&resumed, &state, "belongs to another run");
     }
     assert_refused(&curve(&out, "2", "45", &["--resume", text(&file("none"))]), &file("none"), "cannot be read");
 }

@@ -83,7 +83,7 @@ fn names_that_several_have_are_ready_groups() {
     }
     assert_eq!(model.resolve("name:\"FAR FIELD\"").unwrap().len(), 1);
     let told = model.resolve("group:WING").unwrap_err().to_string();
-    assert!(told.contains("ready groups: BODY"), "{told}");
+    assert!(told.contains("named groups: BODY"), "{told}");
 }
 
 #[test]

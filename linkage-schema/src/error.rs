@@ -43,7 +43,7 @@ pub enum ReadError {
         at: Position,
     },
     /// Not well-formed XML.
-    #[error("{file}:{at}: the XML is broken: {cause}: write the file anew or mend this place", file = file.display())]
+    #[error("{file}:{at}: the XML is broken: {cause}: write the file again or correct this position", file = file.display())]
     Xml {
         /// The file.
         file: PathBuf,
@@ -53,7 +53,7 @@ pub enum ReadError {
         cause: String,
     },
     /// The file ends inside an element.
-    #[error("{file}:{at}: the file ends inside {element}, which began at {opened}: it is truncated; copy or write it anew", file = file.display())]
+    #[error("{file}:{at}: the file ends inside {element}, which began at {opened}: it is truncated; copy or write it again", file = file.display())]
     Truncated {
         /// The file.
         file: PathBuf,

@@ -68,12 +68,12 @@ macro_rules! codes {
 }
 
 codes! {
-    /// The file is not XML, is broken or cut off, or is no MeshLink document; nothing else was checked.
+    /// The file is not XML, is broken or cut off, or is not a MeshLink document; nothing else was checked.
     Unreadable = "ML001", Error, "then validate again, as nothing else was checked";
     /// The elements are in another namespace than MeshLink's; they are read by their local names.
     ForeignNamespace = "ML101", Warning, "put xmlns=\"https://cadence.com\" on the root element";
     /// An element that the format does not have at this place; it is skipped.
-    UnknownElement = "ML102", Warning, "remove it or move it to where the format has it";
+    UnknownElement = "ML102", Warning, "remove it, or move it to where the format allows it";
     /// An attribute that the format does not have on this element; it is ignored.
     UnknownAttribute = "ML103", Warning, "remove it";
     /// A required attribute is missing.
@@ -82,7 +82,7 @@ codes! {
     BadAttribute = "ML105", Error, "write a whole number from 1 to 4294967295";
     /// Text where the format has only elements; it is ignored.
     StrayText = "ML106", Warning, "remove the text or make it a comment";
-    /// An element stands behind one that it must precede; it is read all the same.
+    /// An element follows one that it must precede; it is read nevertheless.
     OutOfOrder = "ML107", Warning, "put all ParamVertex elements before the faces or edges";
     /// A container without what it must contain.
     EmptyElement = "ML108", Warning, "remove the element or give it its contents";
@@ -94,7 +94,7 @@ codes! {
     UnknownType = "ML201", Error, "write Tri3 or Quad4 for faces, Edge2 for edges";
     /// A content format that cannot be read; the content is dropped.
     UnknownFormat = "ML202", Error, "write format=\"text\" or format=\"base64\"";
-    /// Something that is not the index of a point or an id.
+    /// A word that is neither the index of a point nor an id.
     BadIndex = "ML203", Error, "write whole numbers that count from 1";
     /// The count promises more than the content holds.
     CountTooLarge = "ML204", Error, "correct the count or complete the content";
@@ -151,17 +151,17 @@ codes! {
     /// A string that bounds no sheet: no linked face has its edges.
     StringWithoutSheet = "ML409", Warning, "remove the string, or link the faces beside it";
     /// A boundary patch some of whose faces are linked and some are not.
-    PartlyCovered = "ML410", Warning, "link the patch's other faces too; left so, they stay straight or plane";
-    /// Something called by a name that the mesh file does not have, or that is not looked up in meshes of this format.
+    PartlyCovered = "ML410", Warning, "link the patch's other faces too; otherwise they stay straight or planar";
+    /// A reference by a name that the mesh file does not have, or that is not looked up in meshes of this format.
     UnknownMeshName = "ML411", Note, "write point indices in place of names, so that it can be checked";
     /// The mesh that was given is not the file that the linkage names.
     OtherMeshFile = "ML412", Note, "make sure that the linkage was written for this mesh";
     /// Two sides of a periodic pair whose points do not correspond under the transform.
-    NotPeriodic = "ML413", Error, "correct the transform, or what it pairs";
+    NotPeriodic = "ML413", Error, "correct the transform, or the elements that it pairs";
     /// A linked point that is on no boundary face.
     StrayPoint = "ML414", Warning, "correct the index";
-    /// A mesh model that is called as no zone of the mesh file is; what it links is not checked.
-    UnknownZone = "ML415", Error, "call the model as the zone whose points it counts: /Base/zone, or the zone's name";
+    /// A mesh model with the name of no zone of the mesh file; what it links is not checked.
+    UnknownZone = "ML415", Error, "give the model the name of the zone whose points it counts: /Base/zone, or the zone's name";
     /// A reference to nothing in the CAD file, or to several entities of it.
     UnknownReference = "ML501", Error, "write face-N, edge-N, vertex-N, step:#N, iges:DN or name:NAME as the CAD file has it";
     /// A reference to an entity of the wrong kind: sheets lie on faces, strings on edges or faces.
@@ -171,9 +171,9 @@ codes! {
     /// Faces that do not run along the surface they are linked to, or lie on its other side.
     WrongSide = "ML504", Error, "link them to the surface of their own side";
     /// A parameter vertex that, where most of its kind evaluate to their points, evaluates elsewhere.
-    WrongParameters = "ML505", Warning, "write the parameters anew, or leave them out: they are hints only";
+    WrongParameters = "ML505", Warning, "write the parameters again, or leave them out: they are hints only";
     /// Parameter vertices whose parameters are not this CAD kernel's; they are not compared.
-    ForeignParameters = "ML506", Note, "nothing needs to be done: parameters are hints, points are projected anew";
+    ForeignParameters = "ML506", Note, "nothing needs to be done: parameters are hints, points are projected again";
     /// Faces of one sheet that cross a sharp edge of the CAD, which curving would round off or fold.
     SharpEdgeCrossed = "ML507", Warning, "mesh up to the edge, and link the mesh edges on it by a string";
     /// Mesh edges inside one sheet that lie on a sharp edge of the CAD, with no string that holds them there.
@@ -183,7 +183,7 @@ codes! {
     /// The CAD file that was given is not the one that the linkage names.
     OtherCadFile = "ML510", Warning, "make sure that the references mean the same entities in this file";
     /// CAD and mesh differ in size by a factor between units, or lie apart.
-    OtherScale = "ML511", Error, "bring both to one unit and place";
+    OtherScale = "ML511", Error, "bring both to the same unit and position";
 }
 
 impl fmt::Display for Code {

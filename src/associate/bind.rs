@@ -193,7 +193,7 @@ impl Binder<'_> {
         let nodes: BTreeSet<NodeId> = patch.iter().flat_map(|&f| self.boundary.corners[f].iter().copied()).collect();
         let places: Vec<DVec3> = nodes.iter().map(|n| self.mesh.points[n.index()]).collect();
         let entity = self.boundary.faces[patch[0]].entity;
-        let what = format!("{entity}: {} faces are not tied to the CAD", patch.len());
+        let what = format!("{entity}: {} faces are not associated with the CAD", patch.len());
         let classification = match plane_through(&places, self.slack) {
             Some(plane) => {
                 self.result.notes.push(format!("{what}; they stay in their plane"));
@@ -201,7 +201,7 @@ impl Binder<'_> {
                 Classification::Plane(self.result.planes.len() - 1)
             }
             None => {
-                self.result.notes.push(format!("{what} and are not plane; they stay straight"));
+                self.result.notes.push(format!("{what} and are not planar; they stay straight"));
                 Classification::Straight
             }
         };
@@ -293,7 +293,7 @@ impl Binder<'_> {
                 let [a, b] = self.boundary.edges[edge].map(|n| self.mesh.node_tags[n.index()]);
                 let label = |h: Option<&Classification>| match h {
                     Some(&Classification::Surface(s)) => self.result.surfaces[s].label.clone(),
-                    _ => "a patch that is not tied to the CAD".to_owned(),
+                    _ => "a patch that is not associated with the CAD".to_owned(),
                 };
                 let other = classifications.iter().find(|&&h| h != first);
                 Err(AssociateError::NoCurve { a, b, first: label(Some(&first)), second: label(other) })

@@ -62,7 +62,7 @@ pub fn classify(
         let trusted = candidates.trusted;
         let mut classified = held(candidates, None, format!("linkage file {file}"))?;
         if !trusted {
-            let note = "names another CAD file; its numbers were held against this one";
+            let note = "names another CAD file; its references were looked up in the given one";
             classified.association.notes.push(format!("{file} {note}"));
         }
         return Ok(classified);
@@ -79,8 +79,7 @@ pub fn classify(
     let mut classified = held(inference.candidates.clone(), None, "geometry".into())?;
     let [faces, edges] = [inference.undecided(), inference.edges.len()];
     classified.association.notes.push(format!(
-        "the mesh's entity tags are not this CAD's numbers; what lies on what was found by geometry, {faces} faces and {edges} edges \
-         undecided (--dry-run shows it)"
+        "the mesh's entity tags do not match the CAD's numbers; mesh and CAD were associated by geometry, with {faces} faces and {edges} edges undecided (--dry-run shows the association)"
     ));
     classified.inference = Some(inference);
     Ok(classified)

@@ -8,39 +8,36 @@ use glam::DVec3;
 pub enum AssociateError {
     /// CAD and mesh differ in unit.
     #[error(
-        "mesh and CAD differ in size by a factor near {factor}: the mesh's box is {mesh:.6} across, the CAD's {cad:.6}; \
+        "mesh and CAD differ in size by a factor of about {factor}: the mesh's bounding-box diagonal is {mesh:.6}, the CAD's {cad:.6}; \
          if the CAD is in another unit, give --cad-scale {factor} (or --cad-scale auto)"
     )]
     Scale { mesh: f64, cad: f64, factor: f64 },
     /// CAD and mesh differ in size, and by no factor between units.
     #[error(
-        "mesh and CAD differ in size by a factor near {factor:.6}, which is none between units: what is tied of the mesh is \
-         {mesh:.6} across, of the CAD {cad:.6}; they seem not to belong together (--cad-scale F takes any factor)"
+        "mesh and CAD differ in size by a factor of about {factor:.6}, which is no ratio of known units: the bounding-box diagonal is {mesh:.6} of what is associated of the mesh, {cad:.6} of the CAD; they do not seem to belong together (--cad-scale F takes any factor)"
     )]
     Size { mesh: f64, cad: f64, factor: f64 },
     /// CAD and mesh lie apart.
     #[error(
-        "mesh and CAD lie in different places: the boxes' centres are {distance:.6} apart, the mesh is {mesh:.6} across; \
-         move one of them"
+        "mesh and CAD are in different positions: the centres of their bounding boxes are {distance:.6} apart, the mesh's diagonal is {mesh:.6}; translate one of them"
     )]
     Place { mesh: f64, distance: f64 },
     /// A tag or number that means another place on this CAD.
     #[error(
-        "{label} is tied to {entities}, but {count} of its {of} points are not there: the farthest, node {node} at {at}, is \
+        "{label} is associated with {entities}, but {count} of its {of} points are not on it: the farthest, node {node} at {at}, is \
          {distance:.3e} away (limit {limit:.3e}). The numbers may belong to another CAD file; give a linkage file, or \
          raise --max-offset if the mesh is this far off its CAD"
     )]
     Off { label: String, entities: String, count: usize, of: usize, node: u64, at: DVec3, distance: f64, limit: f64 },
     /// A tag that is another entity's number on this CAD.
     #[error(
-        "{label} is tied to {entities}, which its points are near to but not on; they lie on {other}: the numbers belong to \
+        "{label} is associated with {entities}, but its points, though near it, lie on {other}: the numbers belong to \
          another CAD file; give a linkage file"
     )]
     Elsewhere { label: String, entities: String, other: String },
     /// An edge between two surfaces with no CAD edge.
     #[error(
-        "the mesh edge {a}-{b} lies between {first} and {second}, but no CAD edge of theirs holds it: tie it to a curve \
-         by a linkage file, or mesh both sides on one surface"
+        "the mesh edge {a}-{b} lies between {first} and {second}, but on no CAD edge that they share: associate it with a curve by a linkage file, or mesh both sides as one surface"
     )]
     NoCurve { a: u64, b: u64, first: String, second: String },
     /// CAD geometry that cannot be asked.
@@ -48,7 +45,7 @@ pub enum AssociateError {
     Group { label: String, cause: String },
     /// Nothing to do.
     #[error(
-        "nothing of the mesh is tied to the CAD: {surfaces} surface entities, none with the number of a CAD face \
+        "no part of the mesh is associated with the CAD: of its {surfaces} surface entities none has the number of a CAD face \
          (1 to {faces}); give a linkage file"
     )]
     Nothing { surfaces: usize, faces: usize },

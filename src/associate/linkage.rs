@@ -25,7 +25,7 @@ pub enum LinkageError {
         file: PathBuf,
     },
     /// It links several mesh files, of which none is the one to be curved.
-    #[error("{}: links the mesh files {named}, and none of them is {}; give the mesh that it speaks of", file.display(), mesh.display())]
+    #[error("{}: links the mesh files {named}, and none of them is {}; give the mesh that it was written for", file.display(), mesh.display())]
     OtherMeshes {
         /// The linkage file.
         file: PathBuf,
@@ -65,7 +65,7 @@ pub enum LinkageError {
         last: u64,
     },
     /// A periodic pair that is none.
-    #[error("{place}: {cause}; correct the transform, or what it pairs")]
+    #[error("{place}: {cause}; correct the transform, or the elements that it pairs")]
     Periodic {
         /// File, line and column.
         place: String,
@@ -160,7 +160,7 @@ pub fn own_geometry<'d>(document: &'d Document, cad: &Path) -> Vec<&'d GeometryF
 fn not_given(path: &Path, document: &Document, own: &[&GeometryFile]) -> Option<String> {
     let others = document.geometry_files.iter().filter(|file| !own.iter().any(|own| std::ptr::eq(*own, *file)));
     let others = others.map(|file| &file.filename[..]).collect::<Vec<_>>().join(", ");
-    let what = "names further CAD files, what is linked to them counts as not linked";
+    let what = "names further CAD files; what is linked to them counts as not linked";
     (!others.is_empty()).then(|| format!("{} {what}: {others}", path.display()))
 }
 
@@ -229,7 +229,7 @@ impl Reader<'_> {
     /// Sheets and strings that are called by the names which the mesh file gives to sets of faces and edges.
     fn named(&self, links: &ModelLinks, candidates: &mut Candidates) -> Result<(), LinkageError> {
         let unknown = |place: String, label: &str, what: &str| {
-            format!("{place}: {label} calls {what} by name, which the mesh file does not have; not used")
+            format!("{place}: {label} refers to {what} by name, which the mesh file does not have; ignored")
         };
         let known = |entity: EntityKey, name: &str| self.mesh.names_of(entity).iter().any(|own| own == name);
         for sheet in &links.sheets {

@@ -17,7 +17,7 @@ pub enum Part {
 /// A mesh model that is called as no zone of the mesh file is.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "mesh model {reference:?} is no zone of the mesh file, which has {zones}; call the model as the zone whose points it counts"
+    "mesh model {reference:?} is not a zone of the mesh file, which has {zones}; give the model the name of the zone whose points it counts"
 )]
 pub struct UnknownZone {
     reference: String,

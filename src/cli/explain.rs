@@ -28,7 +28,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     }
     for text in &options.codes {
         let code = Code::from_id(text).ok_or_else(|| UnknownCode(text.clone()))?;
-        print(&format!("{code} ({})\n{}\nTo mend it: {}.", code.severity(), code.meaning(), code.remedy()))?;
+        print(&format!("{code} ({})\n{}\nRemedy: {}.", code.severity(), code.meaning(), code.remedy()))?;
     }
     Ok(DONE)
 }

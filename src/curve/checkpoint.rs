@@ -42,7 +42,7 @@ pub enum CheckpointError {
         source: io::Error,
     },
     /// Something else, or of another version.
-    #[error("{file}: is no checkpoint of this version of sagitta", file = file.display())]
+    #[error("{file}: is not a checkpoint of this version of sagitta", file = file.display())]
     Foreign {
         /// The file.
         file: PathBuf,
@@ -55,7 +55,7 @@ pub enum CheckpointError {
     },
     /// Of another mesh, CAD, order or other settings.
     #[error(
-        "{file}: belongs to other work: give the mesh, the CAD, the linkage and the options it was made with (--max-sweeps, \
+        "{file}: belongs to another run: give the mesh, the CAD, the linkage and the options it was made with (--max-sweeps, \
          --time-limit and --threads may differ)",
         file = file.display()
     )]

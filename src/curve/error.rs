@@ -39,7 +39,7 @@ pub enum Error {
         order: Order,
     },
     /// The linear mesh is invalid.
-    #[error("the linear mesh is itself inverted in {count} elements: {listed}; mend it first")]
+    #[error("the linear mesh is itself inverted in {count} elements: {listed}; repair it first")]
     Inverted {
         /// How many elements.
         count: usize,

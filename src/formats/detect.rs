@@ -98,6 +98,6 @@ fn universal(head: &Head) -> Option<Refusal> {
 }
 
 fn xml(head: &Head) -> Option<Refusal> {
-    let reason = || format!("an XML file, but no VTU mesh; {} are read", readable("and"));
+    let reason = || format!("an XML file, but not a VTU mesh; {} are read", readable("and"));
     head.text.starts_with(b"<").then(|| Refusal::other(reason()))
 }

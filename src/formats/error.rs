@@ -107,7 +107,7 @@ pub enum Fault {
     Number { what: &'static str, found: String },
     #[error("{count} {what} do not fit into the {rest} bytes that follow: the file is cut off or damaged")]
     Count { what: &'static str, count: u64, rest: u64 },
-    #[error("{what} are announced as {announced}, but there are {found}: the file is damaged")]
+    #[error("the file announces {announced} {what}, but has {found}: it is damaged")]
     Miscounted { what: &'static str, announced: u64, found: u64 },
     #[error("{0} is not UTF-8 text: the file is damaged, or in another encoding")]
     NotUtf8(&'static str),
@@ -119,19 +119,19 @@ pub enum Fault {
     ByteOrder(u32),
     #[error("section ${0} is missing")]
     MissingSection(&'static str),
-    #[error("section ${0} stands twice")]
+    #[error("section ${0} occurs twice")]
     RepeatedSection(&'static str),
     #[error("section ${later} must follow ${earlier}")]
     SectionOrder { earlier: &'static str, later: &'static str },
     #[error("section ${section} should end here, found {found:?}")]
     SectionEnd { section: String, found: String },
-    #[error("node {0}: a coordinate or parameter is not a finite number; mend it in the mesh generator")]
+    #[error("node {0}: a coordinate or parameter is not a finite number; correct it in the mesh generator")]
     NotFinite(u64),
     #[error("node number 0; numbers must be positive")]
     ZeroNode,
-    #[error("node {0} stands twice; renumber the nodes (Gmsh: Mesh.Renumber)")]
+    #[error("node {0} occurs twice; renumber the nodes (Gmsh: Mesh.Renumber)")]
     RepeatedNode(u64),
-    #[error("{what} {by} refers to node {node}, which the file does not hold")]
+    #[error("{what} {by} refers to node {node}, which the file does not have")]
     UnknownNode { what: &'static str, by: u64, node: u64 },
     #[error("element {by} refers to node {node}, but the nodes are numbered {first} to {last}")]
     NodeRange { by: u64, node: i64, first: i64, last: i64 },
@@ -154,7 +154,7 @@ pub enum Fault {
     #[error(transparent)]
     Cgns(#[from] CgnsFault),
     #[error(
-        "cell {tag} is of type {code}, which leaves out interior nodes or is none of Lagrange's; write Lagrange or linear cells"
+        "cell {tag} is of type {code}, which leaves out interior nodes or is not a Lagrange cell; write Lagrange or linear cells"
     )]
     IncompleteCell { tag: u64, code: i64 },
     #[error(
@@ -162,13 +162,13 @@ pub enum Fault {
     )]
     UnknownCell { tag: u64, code: i64 },
     #[error(
-        "cell {tag} of type {code} has {found} nodes, which no order from 1 to 4 has; its writer lacks such cells: export the mesh as MSH or CGNS"
+        "cell {tag} of type {code} has {found} nodes, which fits no order from 1 to 4; its writer does not support such cells: export the mesh as MSH or CGNS"
     )]
     CellNodes { tag: u64, code: i64, found: usize },
     #[error("an array cannot be decoded ({0}): the file is damaged")]
     Compressed(String),
     #[error("the XML is damaged: {0}")]
     Xml(String),
-    #[error("{0}; this program's limit")]
+    #[error("{0}: the limit of this program")]
     TooMany(#[from] TooMany),
 }

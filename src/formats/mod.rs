@@ -117,7 +117,7 @@ pub fn check_folder(path: &Path) -> Result<(), Error> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match std::fs::metadata(folder) {
         Ok(metadata) if metadata.is_dir() => Ok(()),
-        Ok(_) => Err(std::io::Error::other("its folder is no folder")),
+        Ok(_) => Err(std::io::Error::other("its parent is not a folder")),
         Err(error) => Err(error),
     }
     .map_err(|source| Error::Io { file: path.to_path_buf(), action: "create", source })

@@ -30,7 +30,7 @@ pub(super) fn turn(mesh: &mut Mesh) {
         }
         if turned > 0 {
             mesh.notes.push(format!(
-                "{turned} of {all} {cell} cells were numbered the other way round (negative volume) and are turned"
+                "{turned} of {all} {cell} cells were numbered the other way round (negative volume) and were renumbered"
             ));
         }
     }

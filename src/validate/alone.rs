@@ -31,7 +31,7 @@ fn repeated_faces(links: &ModelLinks<'_>, findings: &mut Findings) {
             findings.push_word(Code::RepeatedFace, link.run.origin, link.run.encoding.word(place * face.len()), || {
                 let place = run_of(links, before).position().map_or_else(String::new, |at| format!(", at {at}"));
                 let who = called("MeshSheet", sheet.name());
-                format!("{} faces of {who} are linked before{place}; the first is {face:?}", own.len())
+                format!("{} faces of {who} are already linked{place}; the first is {face:?}", own.len())
             });
         }
     }
@@ -77,7 +77,7 @@ fn broken_strings(links: &ModelLinks<'_>, findings: &mut Findings) {
             let [from, to] = [first[0][0], first[first.len() - 1][1]];
             findings.push(Code::BrokenString, string.string.origin, || {
                 format!(
-                    "{} is {} paths rather than one: the first leads from point {from} to point {to}, the next begins at {}",
+                    "{} forms {} paths rather than one: the first leads from point {from} to point {to}, the next begins at {}",
                     called("MeshString", string.name()),
                     parts.len(),
                     second[0][0]

@@ -43,7 +43,7 @@ impl<'a> LinkedMesh<'a> {
             findings.push(Code::IndexBase, first.model.origin, || {
                 let (from, move_by) = if shift > 0 { (0, "larger") } else { (2, "smaller") };
                 format!(
-                    "the file counts points from {from}: with every index one {move_by}, its faces are those of the mesh"
+                    "the file counts points from {from}: with every index one {move_by}, its faces match those of the mesh"
                 )
             });
             linked.shift = shift;
@@ -51,7 +51,7 @@ impl<'a> LinkedMesh<'a> {
         }
         findings.push(Code::OtherMesh, first.model.origin, || {
             format!(
-                "of the linked faces only {:.0} % are boundary faces of the mesh, whose node numbers go up to {}",
+                "only {:.0} % of the linked faces are boundary faces of the mesh, whose node numbers go up to {}",
                 100.0 * share,
                 linked.within(first.model).last()
             )

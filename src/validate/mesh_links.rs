@@ -37,7 +37,7 @@ fn vertices(linked: &LinkedMesh<'_>, links: &ModelLinks<'_>, findings: &mut Find
         let VertexRef::Index(index) = vertex.vertex else { continue };
         if linked.node(index).is_none() {
             findings.push(Code::IndexBeyondMesh, vertex.origin, || {
-                format!("ParamVertex is of point {index}; the mesh's go up to {}", linked.last())
+                format!("ParamVertex refers to point {index}; the mesh's points go up to {}", linked.last())
             });
         }
     }
@@ -57,7 +57,7 @@ fn beyond(
         findings.push_word(Code::IndexBeyondMesh, origin, encoding.word(word), || {
             let count = 1 + missing.count();
             format!(
-                "{who} has {count} indices without a node, the first is {first}; the mesh's go up to {}",
+                "{who} has {count} indices of nodes that the mesh does not have, the first is {first}; the mesh's go up to {}",
                 linked.last()
             )
         });
@@ -147,7 +147,7 @@ fn names(linked: &LinkedMesh<'_>, links: &ModelLinks<'_>, findings: &mut Finding
         for (origin, what) in runs.chain(whole) {
             findings.push(Code::UnknownMeshName, origin, || {
                 format!(
-                    "{} calls {what} by name, which this mesh file does not have",
+                    "{} refers to {what} by name, which this mesh file does not have",
                     called("MeshSheet", sheet.name())
                 )
             });
@@ -160,7 +160,7 @@ fn names(linked: &LinkedMesh<'_>, links: &ModelLinks<'_>, findings: &mut Finding
         for (origin, what) in runs.chain(whole) {
             findings.push(Code::UnknownMeshName, origin, || {
                 format!(
-                    "{} calls {what} by name, which this mesh file does not have",
+                    "{} refers to {what} by name, which this mesh file does not have",
                     called("MeshString", string.name())
                 )
             });

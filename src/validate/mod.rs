@@ -65,7 +65,7 @@ pub enum ValidateError {
     Mesh(#[from] formats::Error),
     #[error(transparent)]
     Cad(#[from] cad::ReadError),
-    #[error("{}: is of order {order}; linkage speaks of linear meshes: give the one that it was made from", mesh.display())]
+    #[error("{}: is of order {order}; linkage files refer to linear meshes: give the one that it was made from", mesh.display())]
     NotLinear { mesh: PathBuf, order: crate::element::Order },
 }
 
@@ -279,7 +279,7 @@ fn of_this_mesh<'r, 'a>(
     }
     if let Some(first) = resolution.models.first() {
         findings.push(Code::OtherMeshFile, first.file.origin, || {
-            format!("the linkage speaks of mesh {:?}, {} was given", first.file.filename, path.display())
+            format!("the linkage names mesh {:?}, but {} was given", first.file.filename, path.display())
         });
     }
     all().collect()

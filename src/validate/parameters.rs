@@ -68,7 +68,7 @@ pub(super) fn check(
 
 fn tell(vertex: &ParamVertex, entity: EntityId, distance: f64, findings: &mut Findings) {
     findings.push(Code::WrongParameters, vertex.origin, || {
-        format!("the parameters of point {} on {entity} are those of a place {distance:.3e} away", vertex.vertex)
+        format!("the parameters of point {} on {entity} evaluate to a position {distance:.3e} away", vertex.vertex)
     });
 }
 

@@ -34,7 +34,7 @@ impl Geometry {
             let given = model.is_some_and(|model| same_file(&file.filename, model.path()));
             if let Some(format) = unreadable(file, resolution).filter(|_| !given) {
                 findings.push(Code::UnreadableGeometry, file.origin, || {
-                    format!("{:?} is geometry in the format {format}, which OpenCASCADE cannot read", file.filename)
+                    format!("{:?} is geometry of the format {format}, which OpenCASCADE cannot read", file.filename)
                 });
                 continue;
             }
@@ -57,7 +57,7 @@ impl Geometry {
     fn look_up(&mut self, file: &GeometryFile, model: &Model, findings: &mut Findings) {
         if !same_file(&file.filename, model.path()) {
             findings.push(Code::OtherCadFile, file.origin, || {
-                format!("the linkage speaks of CAD {:?}, {} was given", file.filename, model.path().display())
+                format!("the linkage names CAD {:?}, but {} was given", file.filename, model.path().display())
             });
         }
         for reference in &file.references {
@@ -97,7 +97,7 @@ impl Geometry {
                 let wrong = self.of(link.target.as_deref()).into_iter().find(|e| !matches!(e, EntityId::Face(_)));
                 if let Some(entity) = wrong {
                     findings.push(Code::WrongKind, link.run.origin, || {
-                        format!("{} is linked to {entity}, which is no face", called("MeshSheet", sheet.name()))
+                        format!("{} is linked to {entity}, which is not a face", called("MeshSheet", sheet.name()))
                     });
                 }
             }
@@ -107,7 +107,7 @@ impl Geometry {
                 let wrong = self.of(link.target.as_deref()).into_iter().find(|e| matches!(e, EntityId::Vertex(_)));
                 if let Some(entity) = wrong {
                     findings.push(Code::WrongKind, link.run.origin, || {
-                        format!("{} is linked to {entity}, which is no edge", called("MeshString", string.name()))
+                        format!("{} is linked to {entity}, which is not an edge", called("MeshString", string.name()))
                     });
                 }
             }

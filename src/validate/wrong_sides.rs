@@ -74,7 +74,7 @@ pub(super) fn check(
                     link.run.encoding.word(number * corners_of),
                     || {
                         format!(
-                            "{} faces of {who} stand across the surface they are linked to, the first is {first:?}",
+                            "{} faces of {who} do not run along the surface they are linked to, the first is {first:?}",
                             across.len()
                         )
                     },

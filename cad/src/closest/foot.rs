@@ -43,8 +43,8 @@ pub enum Doubt {
 impl std::fmt::Display for Doubt {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
-            Self::SampledHull => "the hull of a surface or curve near by is sampled",
-            Self::Budget => "too many parts are as near",
+            Self::SampledHull => "a surface or curve nearby is bounded by samples only",
+            Self::Budget => "too many parts are equally near",
             Self::NotSearched => "not searched",
         })
     }

@@ -132,7 +132,7 @@ impl Model {
     fn ready(&self) -> String {
         let names: Vec<&str> =
             self.groups().iter().map(|group| group.name.as_str()).filter(|n| !n.is_empty()).collect();
-        if names.is_empty() { "it has no ready groups".into() } else { format!("ready groups: {}", names.join(", ")) }
+        if names.is_empty() { "it has no named groups".into() } else { format!("named groups: {}", names.join(", ")) }
     }
 
     fn by_origin(&self, reference: &str, origin: &str) -> Result<Vec<EntityId>, ReferenceError> {

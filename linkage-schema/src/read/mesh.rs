@@ -269,7 +269,7 @@ impl<R: BufRead> Cursor<R> {
     fn check_order(&mut self, late: bool) {
         if late {
             let origin = self.tag.origin;
-            self.findings.push(Code::OutOfOrder, origin, || "ParamVertex behind faces or edges".into());
+            self.findings.push(Code::OutOfOrder, origin, || "ParamVertex after faces or edges".into());
         }
     }
 

@@ -148,8 +148,8 @@ fn single<'a>(file: &'a GeometryFile, reference: &'a GeometryReference) -> Targe
 /// Says that an id was given before.
 pub(super) fn duplicate(space: &str, id: u32, origin: Origin, first: Origin, findings: &mut Findings) {
     findings.push(Code::DuplicateId, origin, || match first.position() {
-        Some(position) => format!("{space} {id} was given before, at {position}"),
-        None => format!("{space} {id} was given before"),
+        Some(position) => format!("{space} {id} is already defined, at {position}"),
+        None => format!("{space} {id} is already defined"),
     });
 }
 

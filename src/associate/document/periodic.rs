@@ -30,7 +30,7 @@ pub(super) fn pairs(mesh: &Mesh, boundary: &Boundary, models: &Models, aref: Opt
         let (Some(source), Some(target), Some(map)) = (sheet(master), sheet(record.slave), map) else {
             let slave = record.slave;
             pairs.notes.push(format!(
-                "the periodic pair of {slave} and {master} is not written: the two are not one sheet each whose points correspond"
+                "the periodic pair of {slave} and {master} is not written: each side must be one sheet, and their points must correspond"
             ));
             continue;
         };

@@ -60,16 +60,18 @@ impl Tolerance {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Doubt {
     /// No CAD face holds any of its corners: the patch may not be part of the CAD.
-    #[error("no CAD face holds its points")]
+    #[error("its points are on no CAD face")]
     OffCad,
     /// Each corner is on the CAD, but on no common face.
-    #[error("its points are on the CAD, but no CAD face, nor faces that meet smoothly, hold them all and run along it")]
+    #[error(
+        "its points are on the CAD, but no CAD face, and no set of faces that meet smoothly, contains them all and runs along it"
+    )]
     NoCommonFace,
     /// Several CAD faces hold it, and its neighbours do not decide which.
     #[error("it may lie on {}", list(.0))]
     SeveralFaces(Vec<FaceId>),
     /// It lies between faces on different CAD faces, but along none of their edges.
-    #[error("it lies between {} and {}, but along no CAD edge of theirs", .0[0], .0[1])]
+    #[error("it lies between {} and {}, but along no CAD edge that they share", .0[0], .0[1])]
     NoEdge([FaceId; 2]),
 }
 

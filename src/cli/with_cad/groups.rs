@@ -139,7 +139,7 @@ impl Listing {
                 writeln!(text, "{}", line.trim_end())?;
             }
         }
-        writeln!(text, "{} ready groups", self.groups.len())?;
+        writeln!(text, "{} groups", self.groups.len())?;
         for group in &self.groups {
             writeln!(text, "  {}: {}", group.reference, group.members.join(" "))?;
         }

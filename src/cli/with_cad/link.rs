@@ -45,7 +45,7 @@ pub(in crate::cli) struct Options {
 /// A mesh that is not on the CAD.
 #[derive(Debug, thiserror::Error)]
 #[error(
-    "{mesh} and {cad}: no face of the mesh lies on the CAD within tolerance; the mesh's box is {size:.6} across, the CAD's {cad_size:.6}: {hint}"
+    "{mesh} and {cad}: no face of the mesh lies on the CAD within tolerance; the mesh's bounding-box diagonal is {size:.6}, the CAD's {cad_size:.6}: {hint}"
 )]
 struct Nothing {
     mesh: String,
@@ -70,7 +70,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let Classified { candidates, inference, source, factor } = tied;
     if candidates.sheets.is_empty() {
         let hint = factor.map_or_else(
-            || "are both in one unit and place? If the mesh is off its CAD, raise --tolerance".to_owned(),
+            || "are they in the same unit and position? If the mesh is off its CAD, raise --tolerance".to_owned(),
             |factor| format!("if the CAD is in another unit, give --cad-scale {factor} (or --cad-scale auto)"),
         );
         return Err(Box::new(Nothing {

@@ -220,7 +220,10 @@ impl<'a> Conditions<'a> {
         let used: HashSet<usize> = self.entities.keys().map(|&(_, patch)| patch).collect();
         let unused = self.patches.iter().enumerate().filter(|(n, patch)| patch.is_condition && !used.contains(n));
         for (_, patch) in unused {
-            assembly.mesh.notes.push(format!("{}: holds no face that no other condition holds; left out", patch.path));
+            assembly
+                .mesh
+                .notes
+                .push(format!("{}: has no face that is not in another condition too; left out", patch.path));
         }
         assembly.mesh.physical_names.sort_by_key(|name| (name.dimension, name.tag));
     }

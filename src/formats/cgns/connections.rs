@@ -58,7 +58,7 @@ fn connection(zones: &[Zone], zone: &Zone, node: &Tree, joined: &mut Joined) -> 
     let lists = (node.named(labels::LIST, "PointList"), node.named(labels::LIST, "PointListDonor"));
     let periodic = node.child(labels::CONNECTION_PROPERTY).is_some();
     let (Some(own), Some(donors), false, "Vertex") = (lists.0, lists.1, periodic, location.as_str()) else {
-        joined.notes.push(format!("{}: a connection that is not node to node; it is not used", node.path));
+        joined.notes.push(format!("{}: a connection that is not node to node; ignored", node.path));
         return Ok(false);
     };
     let name = node.text();
@@ -93,5 +93,5 @@ fn coincident(zones: &[Zone], joined: &mut Joined) {
             }
         }
     }
-    joined.notes.push(format!("the zones list no common points; {common} that coincide exactly were joined"));
+    joined.notes.push(format!("the zones list no common points; {common} points that coincide exactly were merged"));
 }

@@ -6,11 +6,11 @@
 pub enum CgnsFault {
     #[error("no {label} {name} in this node")]
     Missing { label: &'static str, name: &'static str },
-    #[error("its data are no {0}: the file is damaged")]
+    #[error("its data are not {0}: the file is damaged")]
     NotNumbers(&'static str),
-    #[error("the file holds no CGNSBase_t: it is no CGNS file, or an empty one")]
+    #[error("the file has no CGNSBase_t: it is not a CGNS file, or an empty one")]
     NoBase,
-    #[error("the base holds no zone")]
+    #[error("the base has no zone")]
     NoZone,
     #[error("the base has cells of dimension {0}; 2 and 3 are read")]
     Dimension(i64),
@@ -18,7 +18,7 @@ pub enum CgnsFault {
     ZoneType(String),
     #[error("{what} has {found} values where {needed} are needed: the file is damaged")]
     Length { what: &'static str, found: usize, needed: u64 },
-    #[error("elements {first} to {last}: no range of element numbers")]
+    #[error("elements {first} to {last}: not a range of element numbers")]
     Range { first: i64, last: i64 },
     #[error("element numbers {0} belong to two sections: the file is damaged")]
     Overlap(u64),
@@ -30,9 +30,9 @@ pub enum CgnsFault {
         "element type {0} leaves out interior nodes (serendipity); export complete elements, or linear ones, from which curved ones are made"
     )]
     Incomplete(i64),
-    #[error("element type {0} is none of CGNS' of order 1 to 4")]
+    #[error("element type {0} is not a CGNS element of order 1 to 4")]
     UnknownType(i64),
-    #[error("refers to zone {0:?}, which the base does not hold")]
+    #[error("refers to zone {0:?}, which the base does not have")]
     UnknownZone(String),
     #[error("lists {found} points but {donors} of the other zone")]
     Unpaired { found: usize, donors: usize },

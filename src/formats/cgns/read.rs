@@ -53,7 +53,7 @@ pub(super) fn mesh(tree: &Tree) -> Result<Mesh, Flaw> {
     assembly.mesh.notes.append(&mut joined.notes);
     let bases = tree.all(labels::BASE).count();
     if bases > 1 {
-        assembly.mesh.notes.push(format!("the file holds {bases} bases; {} is read", base.path));
+        assembly.mesh.notes.push(format!("the file has {bases} bases; {} is read", base.path));
     }
     let mut conditions = Conditions::new(Families::new(base), dimension);
     let mut tags = 0;

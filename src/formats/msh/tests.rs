@@ -48,7 +48,7 @@ fn each_fault_is_told_with_its_place() {
         ("no nodes", HEAD.into(), Place::Line(4), "section $Nodes is missing"),
         ("no elements", [HEAD, NODES].concat(), Place::Line(14), "section $Elements is missing"),
         ("elements first", [HEAD, ELEMENTS].concat(), Place::Line(4), "section $Elements must follow $Nodes"),
-        ("nodes twice", [HEAD, NODES, NODES].concat(), Place::Line(14), "section $Nodes stands twice"),
+        ("nodes twice", [HEAD, NODES, NODES].concat(), Place::Line(14), "section $Nodes occurs twice"),
         (
             "no marker",
             with("$Elements", "Elements"),
@@ -103,14 +103,14 @@ fn each_fault_is_told_with_its_place() {
             Place::Line(11),
             "node 30: a coordinate or parameter is not a finite",
         ),
-        ("repeated node", with("10\n30\n20\n", "10\n30\n30\n"), Place::Line(12), "node 30 stands twice; renumber"),
+        ("repeated node", with("10\n30\n20\n", "10\n30\n30\n"), Place::Line(12), "node 30 occurs twice; renumber"),
         ("node 0", with("10\n30\n20\n", "0\n30\n20\n"), Place::Line(10), "node number 0"),
-        ("fewer nodes", with("1 3 10 30", "1 4 10 30"), Place::Line(12), "nodes are announced as 4, but there are 3"),
+        ("fewer nodes", with("1 3 10 30", "1 4 10 30"), Place::Line(12), "the file announces 4 nodes, but has 3"),
         (
             "unknown node",
             with("5 10 30 20", "5 10 30 21"),
             Place::Line(17),
-            "element 5 refers to node 21, which the file does not hold",
+            "element 5 refers to node 21, which the file does not have",
         ),
         ("unknown type", with("2 7 2 1\n", "2 7 34 1\n"), Place::Line(16), "element type 34 is unknown"),
         (
@@ -126,7 +126,7 @@ fn each_fault_is_told_with_its_place() {
             "more elements",
             with("1 1 1 1\n2 7", "1 2 1 1\n2 7"),
             Place::Line(17),
-            "elements are announced as 2, but there are 1",
+            "the file announces 2 elements, but has 1",
         ),
         (
             "mixed orders",

@@ -120,10 +120,10 @@ pub(super) fn mesh(blocks: Vec<Block>) -> Result<Mesh, Fault> {
 fn notes(assembly: &mut Assembly, blocks: &[Block], joined: usize, collapsed: usize) {
     let notes = &mut assembly.mesh.notes;
     if joined > 0 {
-        notes.push(format!("{joined} points of block sides coincide exactly with others and are one with them"));
+        notes.push(format!("{joined} points on block sides coincide exactly with others and were merged with them"));
     }
     if collapsed > 0 {
-        notes.push(format!("{collapsed} cells have collapsed edges, at which no hex is valid"));
+        notes.push(format!("{collapsed} cells have collapsed edges, where a hex cannot be valid"));
     }
     let blanked: usize = blocks.iter().map(|block| block.blanked).sum();
     if blanked > 0 {

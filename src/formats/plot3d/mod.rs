@@ -52,7 +52,7 @@ fn read(input: Input, _: &super::ReadOptions) -> Result<Mesh, Error> {
     }
     let Some(kind) = kind::of(&head, length) else {
         let reason = "its length fits no PLOT3D grid of three dimensions, single or double precision, with or without \
-                      iblank, in C's or Fortran's records of either byte order: it is cut off, or no grid file";
+                      iblank, in C's or Fortran's records of either byte order: it is cut off, or not a grid file";
         return Err(Error::Format { file: path.to_path_buf(), reason: reason.into() });
     };
     binary(&mut Numbers::new(content, length, Encoding::Bytes(kind.layout)), kind).map_err(flaw)

@@ -28,7 +28,9 @@ pub(super) fn apply(mesh: &mut Mesh, path: &Path) -> Result<(), Error> {
     let text = String::from_utf8_lossy(&std::fs::read(&file).map_err(failed)?).into_owned();
     if text.split_whitespace().next().is_some_and(|word| word.parse::<u64>().is_err()) {
         let name = file.display();
-        mesh.notes.push(format!("{name}: not read, as it is no list of surface number, condition, name (VGRID's?)"));
+        mesh.notes.push(format!(
+            "{name}: not read, as it is not a list of surface number, condition and name (one of VGRID's?)"
+        ));
         return Ok(());
     }
     let surfaces = parse(&text).map_err(|flaw| flaw.of(&file))?;

@@ -59,6 +59,6 @@ fn detect(head: &Head) -> Verdict {
     let Some((_, rest)) = text.split_once("<VTKFile").filter(|_| text.starts_with('<')) else { return Verdict::No };
     match rest.split('>').next().is_some_and(|tag| tag.contains("\"UnstructuredGrid\"")) {
         true => Verdict::ByContent,
-        false => Verdict::Refused(Refusal::unread("a VTK XML file, but of no UnstructuredGrid; save the mesh as VTU")),
+        false => Verdict::Refused(Refusal::unread("a VTK XML file, but not an UnstructuredGrid; save the mesh as VTU")),
     }
 }
