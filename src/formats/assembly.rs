@@ -9,14 +9,14 @@ use rustc_hash::FxHashMap;
 use super::error::Fault;
 use super::turned;
 use crate::element::{Cell, Order};
-use crate::mesh::{Block, Entity, EntityKey, Mesh, NodeId, PhysicalName};
+use crate::mesh::{Block, Entity, EntityKey, Mesh, NodeId, Parts, PhysicalName};
 
 /// The group of the volume's elements where a file does not name them; the name that PyFR asks for.
 const VOLUME_NAME: &str = "fluid";
 
 /// What has been read so far.
 pub(super) struct Assembly {
-    pub(super) mesh: Mesh,
+    pub(super) parts: Parts,
     order: Option<Order>,
     blocks: FxHashMap<(Cell, EntityKey), usize>,
     /// The block that was asked for last.
@@ -35,13 +35,8 @@ impl Assembly {
         if let Some(n) = points.iter().position(|x| !x.is_finite()) {
             return Err(Fault::NotFinite(n as u64 + 1));
         }
-        let mesh = Mesh {
-            node_tags: (1..=points.len() as u64).collect(),
-            node_entities: vec![None; points.len()],
-            points,
-            ..Mesh::default()
-        };
-        Ok(Assembly { mesh, order: None, blocks: FxHashMap::default(), last: None, next_tag: 1 })
+        let parts = Parts { points, ..Parts::default() };
+        Ok(Assembly { parts, order: None, blocks: FxHashMap::default(), last: None, next_tag: 1 })
     }
 
     /// Fixes the order of the mesh, or compares with it.
@@ -53,18 +48,18 @@ impl Assembly {
             return Ok(());
         }
         let mesh = *self.order.get_or_insert(order);
-        self.mesh.order = mesh;
+        self.parts.order = mesh;
         if mesh == order { Ok(()) } else { Err(Fault::MixedOrders { order: mesh, here: order }) }
     }
 
     /// The block of a kind of cell on an entity.
     pub(super) fn block(&mut self, cell: Cell, entity: EntityKey) -> &mut Block {
         let key = (cell, entity);
-        let blocks = &mut self.mesh.blocks;
+        let blocks = &mut self.parts.blocks;
         let place = match self.last {
             Some((known, place)) if known == key => place,
             _ => *self.blocks.entry(key).or_insert_with(|| {
-                blocks.push(Block { cell, entity, physical_tags: Vec::new(), tags: Vec::new(), nodes: Vec::new() });
+                blocks.push(Block::new(cell, entity));
                 blocks.len() - 1
             }),
         };
@@ -88,8 +83,8 @@ impl Assembly {
 
     /// Takes elements out, given by block and place.
     pub(super) fn withdraw(&mut self, elements: &HashSet<(usize, usize)>) {
-        let order = self.mesh.order;
-        for (place, block) in self.mesh.blocks.iter_mut().enumerate() {
+        let order = self.parts.order;
+        for (place, block) in self.parts.blocks.iter_mut().enumerate() {
             if !elements.iter().any(|&(b, _)| b == place) {
                 continue;
             }
@@ -102,7 +97,7 @@ impl Assembly {
 
     /// The physical tag of a name: that of the group of the name, else `wish` or the next free one.
     pub(super) fn group(&mut self, dimension: u8, name: &str, wish: Option<i32>) -> i32 {
-        let names = &mut self.mesh.physical_names;
+        let names = &mut self.parts.physical_names;
         if let Some(known) = names.iter().find(|n| n.dimension == dimension && n.name == name) {
             return known.tag;
         }
@@ -116,33 +111,40 @@ impl Assembly {
 
     /// Says which groups an entity belongs to.
     pub(super) fn entity(&mut self, key: EntityKey, physical_tags: Vec<i32>) {
-        self.mesh.entities.push(Entity { key, bounds: [[0.0; 3]; 2], physical_tags, boundary: Vec::new() });
+        self.parts.entities.push(Entity { key, bounds: [[0.0; 3]; 2], physical_tags, boundary: Vec::new() });
     }
 
-    /// The finished mesh: entities complete with boxes, the volume named, every cell turned so that its volume is
-    /// positive.
-    pub(super) fn finish(mut self) -> Mesh {
-        self.mesh.blocks.retain(|block| !block.tags.is_empty());
-        let used: HashSet<EntityKey> = self.mesh.blocks.iter().map(|block| block.entity).collect();
-        self.mesh.entities.retain(|entity| used.contains(&entity.key));
+    /// The finished mesh.
+    ///
+    /// # Errors
+    /// [`Fault::Inconsistent`].
+    pub(super) fn finish(self) -> Result<Mesh, Fault> {
+        Ok(Mesh::new(self.complete())?)
+    }
+
+    /// The parts with entities complete with boxes, the volume named, every cell turned so that its volume is positive.
+    pub(super) fn complete(mut self) -> Parts {
+        self.parts.blocks.retain(|block| !block.tags.is_empty());
+        let used: HashSet<EntityKey> = self.parts.blocks.iter().map(|block| block.entity).collect();
+        self.parts.entities.retain(|entity| used.contains(&entity.key));
         self.name_volume();
-        let known: HashSet<EntityKey> = self.mesh.entities.iter().map(|entity| entity.key).collect();
+        let known: HashSet<EntityKey> = self.parts.entities.iter().map(|entity| entity.key).collect();
         let mut missing: Vec<EntityKey> = used.difference(&known).copied().collect();
         missing.sort_unstable();
         missing.into_iter().for_each(|key| self.entity(key, Vec::new()));
-        self.mesh.entities.sort_by_key(|entity| entity.key);
-        let mut mesh = self.mesh;
-        bounds(&mut mesh);
-        turned::turn(&mut mesh);
-        mesh
+        self.parts.entities.sort_by_key(|entity| entity.key);
+        let mut parts = self.parts;
+        bounds(&mut parts);
+        turned::turn(&mut parts);
+        parts
     }
 
     /// Puts the entities of the top dimension that belong to no group into one.
     fn name_volume(&mut self) {
-        let top = self.mesh.blocks.iter().map(|block| block.entity.dimension).max().unwrap_or(3);
+        let top = self.parts.blocks.iter().map(|block| block.entity.dimension).max().unwrap_or(3);
         let grouped: HashSet<EntityKey> =
-            self.mesh.entities.iter().filter(|e| !e.physical_tags.is_empty()).map(|e| e.key).collect();
-        let mut plain: Vec<EntityKey> = self.mesh.blocks.iter().map(|block| block.entity).collect();
+            self.parts.entities.iter().filter(|e| !e.physical_tags.is_empty()).map(|e| e.key).collect();
+        let mut plain: Vec<EntityKey> = self.parts.blocks.iter().map(|block| block.entity).collect();
         plain.retain(|key| key.dimension == top && !grouped.contains(key));
         plain.sort_unstable();
         plain.dedup();
@@ -150,10 +152,10 @@ impl Assembly {
             return;
         }
         // Surfaces may carry tags without a name, which the volume's must not repeat.
-        let last = self.mesh.entities.iter().flat_map(|e| &e.physical_tags).copied().max().unwrap_or(0);
+        let last = self.parts.entities.iter().flat_map(|e| &e.physical_tags).copied().max().unwrap_or(0);
         let tag = self.group(top, VOLUME_NAME, Some(last.saturating_add(1)));
         for key in plain {
-            self.mesh.entities.retain(|entity| entity.key != key);
+            self.parts.entities.retain(|entity| entity.key != key);
             self.entity(key, vec![tag]);
         }
     }
@@ -177,7 +179,7 @@ const CHUNK: usize = 1 << 16;
 const EMPTY: [DVec3; 2] = [DVec3::INFINITY, DVec3::NEG_INFINITY];
 
 /// Gives the entities their boxes.
-fn bounds(mesh: &mut Mesh) {
+fn bounds(mesh: &mut Parts) {
     let places: FxHashMap<EntityKey, usize> = mesh.entities.iter().enumerate().map(|(n, e)| (e.key, n)).collect();
     let mut boxes = vec![EMPTY; mesh.entities.len()];
     for block in &mesh.blocks {

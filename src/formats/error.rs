@@ -4,9 +4,8 @@ use std::fmt;
 use std::io;
 use std::path::PathBuf;
 
-use super::cgns::CgnsFault;
 use crate::element::Order;
-use crate::mesh::{EntityKey, TooMany};
+use crate::mesh::{Inconsistent, TooMany};
 
 /// A mesh file could not be read or written.
 #[derive(Debug, thiserror::Error)]
@@ -82,8 +81,8 @@ pub struct Flaw {
 impl Flaw {
     /// A fault at a place.
     #[must_use]
-    pub fn new(place: Place, fault: Fault) -> Flaw {
-        Flaw { place, fault: Box::new(fault) }
+    pub fn new(place: Place, fault: impl Into<Fault>) -> Flaw {
+        Flaw { place, fault: Box::new(fault.into()) }
     }
 
     /// The error, now that the file's name is known.
@@ -111,64 +110,29 @@ pub enum Fault {
     Miscounted { what: &'static str, announced: u64, found: u64 },
     #[error("{0} is not UTF-8 text: the file is damaged, or in another encoding")]
     NotUtf8(&'static str),
-    #[error("MSH version {0} is not read; save as version 4.1 or 2.2 (Gmsh: Mesh.MshFileVersion = 4.1)")]
-    Version(String),
-    #[error("data size {0}, but Gmsh's files have 8; the header is damaged")]
-    DataSize(i32),
-    #[error("the byte-order mark is {0:#010x}, not 1 in either byte order: the header is damaged")]
-    ByteOrder(u32),
-    #[error("section ${0} is missing")]
-    MissingSection(&'static str),
-    #[error("section ${0} occurs twice")]
-    RepeatedSection(&'static str),
-    #[error("section ${later} must follow ${earlier}")]
-    SectionOrder { earlier: &'static str, later: &'static str },
-    #[error("section ${section} should end here, found {found:?}")]
-    SectionEnd { section: String, found: String },
     #[error("node {0}: a coordinate or parameter is not a finite number; correct it in the mesh generator")]
     NotFinite(u64),
-    #[error("node number 0; numbers must be positive")]
-    ZeroNode,
-    #[error("node {0} occurs twice; renumber the nodes (Gmsh: Mesh.Renumber)")]
-    RepeatedNode(u64),
-    #[error("{what} {by} refers to node {node}, which the file does not have")]
-    UnknownNode { what: &'static str, by: u64, node: u64 },
     #[error("element {by} refers to node {node}, but the nodes are numbered {first} to {last}")]
     NodeRange { by: u64, node: i64, first: i64, last: i64 },
-    #[error(
-        "element type {0} is unknown; points, lines, triangles, quadrilaterals, tets, pyramids, prisms and hexes are read"
-    )]
-    UnknownElementType(i32),
-    #[error(
-        "element type {0} leaves out interior nodes (serendipity); write complete elements (Gmsh: Mesh.SecondOrderIncomplete = 0)"
-    )]
-    IncompleteElementType(i32),
-    #[error("element type {0} is of order 5 or more; orders 1 to 4 are read")]
-    OrderTooHigh(i32),
     #[error("elements of {here} in a mesh of {order}; set one order for the whole mesh (Gmsh: Mesh > Set order)")]
     MixedOrders { order: Order, here: Order },
-    #[error("elements of dimension {found} on {entity}: the file is damaged")]
-    ElementDimension { entity: EntityKey, found: usize },
-    #[error("entity dimension {0} is outside 0 to 3")]
-    EntityDimension(i32),
-    #[error(transparent)]
-    Cgns(#[from] CgnsFault),
-    #[error(
-        "cell {tag} is of type {code}, which leaves out interior nodes or is not a Lagrange cell; write Lagrange or linear cells"
-    )]
-    IncompleteCell { tag: u64, code: i64 },
-    #[error(
-        "cell {tag} is of type {code}: polygons, polyhedra, strips and voxels are not read; write tets, pyramids, prisms, hexes"
-    )]
-    UnknownCell { tag: u64, code: i64 },
-    #[error(
-        "cell {tag} of type {code} has {found} nodes, which fits no order from 1 to 4; its writer does not support such cells: export the mesh as MSH or CGNS"
-    )]
-    CellNodes { tag: u64, code: i64, found: usize },
-    #[error("an array cannot be decoded ({0}): the file is damaged")]
-    Compressed(String),
-    #[error("the XML is damaged: {0}")]
-    Xml(String),
     #[error("{0}: the limit of this program")]
     TooMany(#[from] TooMany),
+    #[error("{0}: the file is damaged")]
+    Inconsistent(#[from] Inconsistent),
+    /// A fault that only files of one format can have.
+    #[error("{0}")]
+    Own(Box<dyn std::error::Error + Send + Sync>),
 }
+
+/// Makes the faults of a format faults of mesh files.
+macro_rules! own {
+    ($fault:ty) => {
+        impl From<$fault> for $crate::formats::error::Fault {
+            fn from(fault: $fault) -> $crate::formats::error::Fault {
+                $crate::formats::error::Fault::Own(Box::new(fault))
+            }
+        }
+    };
+}
+pub(super) use own;

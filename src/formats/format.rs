@@ -66,10 +66,10 @@ impl Format {
 impl Holds {
     /// Why a mesh does not fit, where it does not.
     pub(super) fn refusal(&self, mesh: &Mesh) -> Option<String> {
-        let foreign = mesh.blocks.iter().find(|block| !block.tags.is_empty() && !self.cells.contains(&block.cell));
+        let foreign = mesh.blocks().iter().find(|block| !block.tags.is_empty() && !self.cells.contains(&block.cell));
         match foreign {
-            _ if mesh.order > self.highest => {
-                Some(format!("the format has no elements of {}; {} is its highest order", mesh.order, self.highest))
+            _ if mesh.order() > self.highest => {
+                Some(format!("the format has no elements of {}; {} is its highest order", mesh.order(), self.highest))
             }
             Some(block) => Some(format!("the format has no {}", block.cell)),
             None => None,

@@ -58,7 +58,7 @@ impl<R: BufRead> Numbers<R> {
     }
 
     /// A fault here.
-    pub(super) fn flaw(&self, fault: Fault) -> Flaw {
+    pub(super) fn flaw(&self, fault: impl Into<Fault>) -> Flaw {
         self.scanner.flaw(fault)
     }
 

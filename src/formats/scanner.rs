@@ -37,14 +37,14 @@ impl<R: BufRead> Scanner<R> {
     }
 
     /// A fault here.
-    pub(super) fn flaw(&self, fault: Fault) -> Flaw {
+    pub(super) fn flaw(&self, fault: impl Into<Fault>) -> Flaw {
         Flaw::new(self.place(), fault)
     }
 
     fn peek(&mut self) -> Result<Option<u8>, Flaw> {
         let (offset, line, binary) = (self.offset, self.line, self.binary);
         let place = if binary { Place::Byte(offset) } else { Place::Line(line) };
-        let buffer = self.input.fill_buf().map_err(|e| Flaw::new(place, e.into()))?;
+        let buffer = self.input.fill_buf().map_err(|e| Flaw::new(place, e))?;
         Ok(buffer.first().copied())
     }
 
@@ -157,7 +157,7 @@ impl<R: BufRead> Scanner<R> {
                 Ok(())
             }
             Err(e) if e.kind() == std::io::ErrorKind::UnexpectedEof => Err(self.flaw(Fault::Truncated(what))),
-            Err(e) => Err(self.flaw(e.into())),
+            Err(e) => Err(self.flaw(e)),
         }
     }
 
@@ -191,7 +191,7 @@ impl<R: BufRead> Scanner<R> {
 
     /// Whether these characters follow, after white space; as far as the input is buffered.
     pub(super) fn next_is(&mut self, text: &[u8]) -> Result<bool, Flaw> {
-        let buffer = self.input.fill_buf().map_err(|e| Flaw::new(Place::Byte(self.offset), e.into()))?;
+        let buffer = self.input.fill_buf().map_err(|e| Flaw::new(Place::Byte(self.offset), e))?;
         Ok(buffer.trim_ascii_start().starts_with(text))
     }
 

@@ -5,8 +5,8 @@ use std::collections::HashSet;
 use rustc_hash::FxHashMap;
 
 use super::assembly::Assembly;
-use crate::element::{Cell, canonical, face_lattice, lattice};
-use crate::mesh::{EntityKey, Mesh, NodeId};
+use crate::element::{Cell, face_lattice, lattice};
+use crate::mesh::{Block, EntityKey, FaceKey, NodeId, Parts};
 
 /// A face of the boundary.
 pub(super) struct SkinFace {
@@ -17,41 +17,38 @@ pub(super) struct SkinFace {
     element: Option<(usize, usize)>,
 }
 
-/// Corners in canonical order.
-type Key = [NodeId; 4];
-
-fn key(corners: &[NodeId]) -> Key {
-    let mut key = [NodeId::NONE; 4];
-    let order = canonical(corners);
-    key.iter_mut().zip(&order[..corners.len()]).for_each(|(slot, &q)| *slot = corners[usize::from(q)]);
-    key
+/// Blocks of cells of a dimension, with their places.
+fn blocks_of(mesh: &Parts, dimension: usize) -> impl Iterator<Item = (usize, &Block)> {
+    mesh.blocks.iter().enumerate().filter(move |(_, block)| block.cell.dimension() == dimension)
 }
 
 /// Faces of the boundary, and of elements of one dimension less than the cells, that belong to none of these entities;
 /// in the order of the file's faces, then of the cells.
-pub(super) fn bare_faces(mesh: &Mesh, taken: &HashSet<EntityKey>) -> Vec<SkinFace> {
+pub(super) fn bare_faces(mesh: &Parts, taken: &HashSet<EntityKey>) -> Vec<SkinFace> {
     let mut faces = Vec::new();
-    let mut known: HashSet<Key> = HashSet::new();
-    for (place, block) in mesh.blocks_of(2) {
+    let mut known: HashSet<FaceKey> = HashSet::new();
+    for (place, block) in blocks_of(mesh, 2) {
         for (n, nodes) in block.elements(mesh.order).enumerate() {
-            known.insert(key(&nodes[..block.cell.corner_count()]));
+            known.insert(FaceKey::new(&nodes[..block.cell.corner_count()]));
             if !taken.contains(&block.entity) {
                 faces.push(SkinFace { cell: block.cell, nodes: nodes.to_vec(), element: Some((place, n)) });
             }
         }
     }
-    faces.extend(skin(mesh).into_iter().filter(|face| !known.contains(&key(&face.nodes[..face.cell.corner_count()]))));
+    faces.extend(
+        skin(mesh).into_iter().filter(|face| !known.contains(&FaceKey::new(&face.nodes[..face.cell.corner_count()]))),
+    );
     faces
 }
 
 /// The faces that one cell alone has, in the order of the cells.
-fn skin(mesh: &Mesh) -> Vec<SkinFace> {
-    let mut open: FxHashMap<Key, (usize, usize, usize)> = FxHashMap::default();
-    for (place, block) in mesh.blocks_of(3) {
+fn skin(mesh: &Parts) -> Vec<SkinFace> {
+    let mut open: FxHashMap<FaceKey, (usize, usize, usize)> = FxHashMap::default();
+    for (place, block) in blocks_of(mesh, 3) {
         for (n, nodes) in block.elements(mesh.order).enumerate() {
             for (f, face) in block.cell.faces().iter().enumerate() {
                 let corners: Vec<NodeId> = face.corners.iter().map(|&c| nodes[usize::from(c)]).collect();
-                let key = key(&corners);
+                let key = FaceKey::new(&corners);
                 if open.remove(&key).is_none() {
                     open.insert(key, (place, n, f));
                 }
@@ -63,7 +60,7 @@ fn skin(mesh: &Mesh) -> Vec<SkinFace> {
     places.into_iter().map(|place| face(mesh, place)).collect()
 }
 
-fn face(mesh: &Mesh, (place, n, f): (usize, usize, usize)) -> SkinFace {
+fn face(mesh: &Parts, (place, n, f): (usize, usize, usize)) -> SkinFace {
     let block = &mesh.blocks[place];
     let face = &block.cell.faces()[f];
     let nodes = &block.nodes[n * block.stride(mesh.order)..];
@@ -77,7 +74,7 @@ fn face(mesh: &Mesh, (place, n, f): (usize, usize, usize)) -> SkinFace {
 pub(super) fn assign(assembly: &mut Assembly, faces: Vec<(SkinFace, EntityKey)>) {
     let moved: HashSet<(usize, usize)> = faces.iter().filter_map(|(face, _)| face.element).collect();
     let tags: Vec<Option<u64>> =
-        faces.iter().map(|(face, _)| face.element.map(|(block, n)| assembly.mesh.blocks[block].tags[n])).collect();
+        faces.iter().map(|(face, _)| face.element.map(|(block, n)| assembly.parts.blocks[block].tags[n])).collect();
     assembly.withdraw(&moved);
     for ((face, entity), tag) in faces.into_iter().zip(tags) {
         match tag {

@@ -5,10 +5,10 @@
 use rayon::prelude::*;
 
 use crate::element::{Cell, mirrored, signed_volume};
-use crate::mesh::{Mesh, NodeId};
+use crate::mesh::{NodeId, Parts};
 
 /// Turns every cell of negative volume, and notes how many of each kind there were.
-pub(super) fn turn(mesh: &mut Mesh) {
+pub(super) fn turn(mesh: &mut Parts) {
     let (order, points) = (mesh.order, &mesh.points);
     for cell in Cell::VOLUME {
         let exchanged = mirrored(cell, order);

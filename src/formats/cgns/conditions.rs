@@ -214,18 +214,18 @@ impl<'a> Conditions<'a> {
             tags.dedup();
             assembly.entity(key, tags);
             if *is_condition && dimension < self.dimension {
-                assembly.mesh.conditions.push(Condition { entity: key, name: name.clone(), kind: kind.clone() });
+                assembly.parts.conditions.push(Condition { entity: key, name: name.clone(), kind: kind.clone() });
             }
         }
         let used: HashSet<usize> = self.entities.keys().map(|&(_, patch)| patch).collect();
         let unused = self.patches.iter().enumerate().filter(|(n, patch)| patch.is_condition && !used.contains(n));
         for (_, patch) in unused {
             assembly
-                .mesh
+                .parts
                 .notes
                 .push(format!("{}: has no face that is not in another condition too; left out", patch.path));
         }
-        assembly.mesh.physical_names.sort_by_key(|name| (name.dimension, name.tag));
+        assembly.parts.physical_names.sort_by_key(|name| (name.dimension, name.tag));
     }
 
     /// Faces of the boundary whose corners are all listed by a condition on vertices become its faces, unless another
@@ -238,7 +238,7 @@ impl<'a> Conditions<'a> {
         let conditions: HashSet<EntityKey> =
             self.entities.iter().filter(|((_, p), _)| self.patches[*p].is_condition).map(|(_, &key)| key).collect();
         let mut assigned = Vec::new();
-        for face in skin::bare_faces(&assembly.mesh, &conditions) {
+        for face in skin::bare_faces(&assembly.parts, &conditions) {
             let corners = &face.nodes[..face.cell.corner_count()];
             let holds = |(_, set): &&(usize, HashSet<NodeId>)| corners.iter().all(|node| set.contains(node));
             if let Some(&(patch, _)) = by_vertices.iter().find(holds) {

@@ -72,8 +72,8 @@ fn connection(zones: &[Zone], zone: &Zone, node: &Tree, joined: &mut Joined) -> 
         return Err(node.flaw(CgnsFault::Unpaired { found: points.len(), donors: others.len() }));
     }
     for (a, b) in points.iter().zip(others.iter()) {
-        let a = zone.point(a).map_err(|fault| own.general(fault))?;
-        let b = donor.point(b).map_err(|fault| donors.general(fault))?;
+        let a = zone.point(a).map_err(|fault| own.flaw(fault))?;
+        let b = donor.point(b).map_err(|fault| donors.flaw(fault))?;
         joined.join(a, b);
     }
     Ok(true)

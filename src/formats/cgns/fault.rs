@@ -1,9 +1,8 @@
 //! What is wrong with a CGNS file's content.
 
-/// What is wrong with a node of a CGNS file.
+/// What can be wrong with a node of a CGNS file beside what can be wrong with any file.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs)] // the message of each says what it is
-pub enum CgnsFault {
+pub(super) enum CgnsFault {
     #[error("no {label} {name} in this node")]
     Missing { label: &'static str, name: &'static str },
     #[error("its data are not {0}: the file is damaged")]
@@ -37,3 +36,5 @@ pub enum CgnsFault {
     #[error("lists {found} points but {donors} of the other zone")]
     Unpaired { found: usize, donors: usize },
 }
+
+crate::formats::error::own!(CgnsFault);

@@ -28,7 +28,6 @@ use crate::element::{Cell, Order};
 use crate::mesh::Mesh;
 
 pub use child::{READER_SUBCOMMAND, serve_reader};
-pub use fault::CgnsFault;
 
 /// CGNS on HDF5.
 pub(super) static FORMAT: Format = Format {

@@ -49,11 +49,11 @@ pub(super) fn mesh(tree: &Tree) -> Result<Mesh, Flaw> {
     }
     let mut joined = connections::join(&zones)?;
     let (points, nodes) = merged(&zones, &mut joined);
-    let mut assembly = Assembly::new(points).map_err(|fault| base.general(fault))?;
-    assembly.mesh.notes.append(&mut joined.notes);
+    let mut assembly = Assembly::new(points).map_err(|fault| base.flaw(fault))?;
+    assembly.parts.notes.append(&mut joined.notes);
     let bases = tree.all(labels::BASE).count();
     if bases > 1 {
-        assembly.mesh.notes.push(format!("the file has {bases} bases; {} is read", base.path));
+        assembly.parts.notes.push(format!("the file has {bases} bases; {} is read", base.path));
     }
     let mut conditions = Conditions::new(Families::new(base), dimension);
     let mut tags = 0;
@@ -67,10 +67,10 @@ pub(super) fn mesh(tree: &Tree) -> Result<Mesh, Flaw> {
     if zones.len() > 1 {
         for zone in &zones {
             let nodes = nodes[zone.start..zone.start + zone.points.len()].to_vec();
-            assembly.mesh.zones.push(crate::mesh::Zone { name: zone.tree.path.clone(), nodes });
+            assembly.parts.zones.push(crate::mesh::Zone { name: zone.tree.path.clone(), nodes });
         }
     }
-    Ok(assembly.finish())
+    assembly.finish().map_err(|fault| base.flaw(fault))
 }
 
 fn zone<'a>(tree: &'a Tree<'a>, start: usize) -> Result<Zone<'a>, Flaw> {

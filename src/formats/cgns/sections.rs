@@ -110,8 +110,8 @@ impl<'a> Section<'a> {
     }
 
     /// A fault of one of its elements.
-    pub(super) fn flaw(&self, fault: Fault) -> Flaw {
-        self.tree.general(fault)
+    pub(super) fn flaw(&self, fault: impl Into<Fault>) -> Flaw {
+        self.tree.flaw(fault)
     }
 }
 

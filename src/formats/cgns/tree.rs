@@ -44,12 +44,7 @@ impl<'a> Tree<'a> {
     }
 
     /// A fault in this node.
-    pub(super) fn flaw(&self, fault: CgnsFault) -> Flaw {
-        self.general(fault.into())
-    }
-
-    /// A fault in this node that other formats know too.
-    pub(super) fn general(&self, fault: Fault) -> Flaw {
+    pub(super) fn flaw(&self, fault: impl Into<Fault>) -> Flaw {
         Flaw::new(Place::Node(self.path.clone()), fault)
     }
 

@@ -84,9 +84,9 @@ struct Layout<'a> {
 
 impl<'a> Layout<'a> {
     fn new(mesh: &'a Mesh) -> Layout<'a> {
-        let top = mesh.blocks.iter().map(|block| block.cell.dimension()).max().unwrap_or(3).max(2);
+        let top = mesh.blocks().iter().map(|block| block.cell.dimension()).max().unwrap_or(3).max(2);
         let mut sections: Vec<Section> = Vec::new();
-        for block in mesh.blocks.iter().filter(|block| block.cell.dimension() + 1 >= top && !block.tags.is_empty()) {
+        for block in mesh.blocks().iter().filter(|block| block.cell.dimension() + 1 >= top && !block.tags.is_empty()) {
             let known = sections.iter_mut().find(|section| section.cell == block.cell);
             match known {
                 Some(section) => section.blocks.push(block),
@@ -100,21 +100,21 @@ impl<'a> Layout<'a> {
             section.count = section.blocks.iter().map(|block| block.tags.len()).sum();
             next += section.count;
         }
-        let longest = sections.iter().map(|section| section.count * section.cell.node_count(mesh.order)).max();
-        let largest = longest.unwrap_or(0).max(mesh.points.len()).max(next);
+        let longest = sections.iter().map(|section| section.count * section.cell.node_count(mesh.order())).max();
+        let largest = longest.unwrap_or(0).max(mesh.points().len()).max(next);
         Layout { mesh, top, families: families(mesh, top), sections, largest }
     }
 
     fn zone<I: Index>(&self, base: &Node) -> Result<(), Unwritten> {
         let (mesh, top) = (self.mesh, self.top);
         let cells = self.sections.iter().filter(|section| section.cell.dimension() == top).map(|s| s.count).sum();
-        let sizes = [mesh.points.len(), cells, 0].map(I::of);
+        let sizes = [mesh.points().len(), cells, 0].map(I::of);
         let zone = base.array("Zone", labels::ZONE, &[3, 1], &sizes)?;
         zone.text("ZoneType", labels::ZONE_TYPE, "Unstructured")?;
         let coordinates = zone.child("GridCoordinates", labels::COORDINATES)?;
         for (axis, name) in ["CoordinateX", "CoordinateY", "CoordinateZ"].into_iter().enumerate() {
-            let fill = |places: std::ops::Range<usize>| mesh.points[places].iter().map(|x| x[axis]).collect();
-            coordinates.list::<f64>(name, labels::ARRAY, mesh.points.len(), fill)?;
+            let fill = |places: std::ops::Range<usize>| mesh.points()[places].iter().map(|x| x[axis]).collect();
+            coordinates.list::<f64>(name, labels::ARRAY, mesh.points().len(), fill)?;
         }
         for section in &self.sections {
             self.section::<I>(&zone, section)?;
@@ -128,7 +128,7 @@ impl<'a> Layout<'a> {
     }
 
     fn section<I: Index>(&self, zone: &Node, section: &Section) -> Result<(), Unwritten> {
-        let order = self.mesh.order;
+        let order = self.mesh.order();
         let code = type_code::of(section.cell, order);
         let name = type_code::name(section.cell, order);
         let node = zone.array(&name, labels::ELEMENTS, &[2], &[code, 0])?;
@@ -165,7 +165,7 @@ impl<'a> Layout<'a> {
         let parent = zone.child("ZoneBC", labels::ZONE_BC)?;
         let mut names = HashSet::new();
         for key in boundary.into_iter().chain(volumes) {
-            let given = self.mesh.conditions.iter().find(|condition| condition.entity == key);
+            let given = self.mesh.conditions().iter().find(|condition| condition.entity == key);
             let groups = self.groups(key);
             let bare =
                 format!("{}_{}", ["point", "curve", "surface", "volume"][usize::from(key.dimension.min(3))], key.tag);
@@ -260,7 +260,7 @@ impl Family<'_> {
             key.dimension == self.group.dimension
                 && mesh.physical_tags_of(key).iter().any(|tag| tag.abs() == self.group.tag)
         };
-        let mut kinds = mesh.conditions.iter().filter(|condition| belongs(condition.entity)).map(|c| c.kind.as_str());
+        let mut kinds = mesh.conditions().iter().filter(|condition| belongs(condition.entity)).map(|c| c.kind.as_str());
         if let Some(kind) = kinds.next().filter(|&kind| kind != "FamilySpecified" && kinds.all(|other| other == kind)) {
             node.text("FamilyBC", labels::FAMILY_BC, kind)?;
         }
@@ -271,7 +271,7 @@ impl Family<'_> {
 /// A family for each group of the boundary and of the cells.
 fn families(mesh: &Mesh, top: usize) -> BTreeMap<(u8, i32), Family<'_>> {
     let mut names = HashSet::new();
-    let groups = mesh.physical_names.iter().filter(|group| usize::from(group.dimension) + 1 >= top);
+    let groups = mesh.physical_names().iter().filter(|group| usize::from(group.dimension) + 1 >= top);
     groups
         .map(|group| ((group.dimension, group.tag), Family { node: unique(&mut names, &group.name), group }))
         .collect()

@@ -4,18 +4,19 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
+use super::fault::MshFault;
 use super::node_order::ORDER;
 use super::node_tags::NodeTags;
 use super::source::Source;
 use super::type_code::{self, Type};
 use crate::element::{Cell, Order};
 use crate::formats::error::{Fault, Flaw};
-use crate::mesh::{Block, EntityKey, Mesh, NodeId};
+use crate::mesh::{EntityKey, Inconsistent, Mesh, NodeId, Parts};
 
 /// What has been read so far.
 #[derive(Default)]
 pub(super) struct Draft {
-    pub(super) mesh: Mesh,
+    pub(super) parts: Parts,
     /// The order that the first element fixed.
     order: Option<Order>,
     /// Present once the nodes have been read.
@@ -53,30 +54,30 @@ impl Draft {
         entity: Option<EntityKey>,
     ) -> Result<NodeId, Flaw> {
         if tag == 0 {
-            return Err(source.flaw(Fault::ZeroNode));
+            return Err(source.flaw(MshFault::ZeroNode));
         }
         if !point.iter().all(|x| x.is_finite()) {
             return Err(source.flaw(Fault::NotFinite(tag)));
         }
-        let node = NodeId::new(self.mesh.points.len()).map_err(|e| source.flaw(e.into()))?;
-        self.mesh.points.push(DVec3::from_array(point));
-        self.mesh.node_tags.push(tag);
-        self.mesh.node_entities.push(entity);
+        let node = NodeId::new(self.parts.points.len()).map_err(|e| source.flaw(e))?;
+        self.parts.points.push(DVec3::from_array(point));
+        self.parts.node_tags.push(tag);
+        self.parts.node_entities.push(entity);
         Ok(node)
     }
 
     /// Adds the parameters of the node just added.
     pub(super) fn push_parameters(&mut self, source: &impl Source, node: NodeId, uv: [f64; 2]) -> Result<(), Flaw> {
         if !uv.iter().all(|x| x.is_finite()) {
-            return Err(source.flaw(Fault::NotFinite(self.mesh.node_tags[node.index()])));
+            return Err(source.flaw(Fault::NotFinite(self.parts.node_tags[node.index()])));
         }
-        self.mesh.node_parameters.push((node, uv));
+        self.parts.node_parameters.push((node, uv));
         Ok(())
     }
 
     /// Closes the list of nodes: from here on they can be looked up.
     pub(super) fn end_nodes(&mut self, source: &impl Source) -> Result<(), Flaw> {
-        let table = NodeTags::new(&self.mesh.node_tags).map_err(|fault| source.flaw(fault))?;
+        let table = NodeTags::new(&self.parts.node_tags).map_err(|fault| source.flaw(fault))?;
         self.node_tags = Some(table);
         Ok(())
     }
@@ -90,7 +91,7 @@ impl Draft {
     pub(super) fn node(&self, source: &impl Source, tag: u64, what: &'static str, by: u64) -> Result<NodeId, Flaw> {
         match self.node_tags.as_ref().and_then(|tags| tags.get(tag)) {
             Some(node) => Ok(node),
-            None => Err(source.flaw(Fault::UnknownNode { what, by, node: tag })),
+            None => Err(source.flaw(MshFault::UnknownNode { what, by, node: tag })),
         }
     }
 
@@ -98,9 +99,9 @@ impl Draft {
     pub(super) fn element_type(&mut self, source: &impl Source, code: i32) -> Result<ElementType, Flaw> {
         let (cell, order) = match type_code::meaning(code) {
             Some(Type::Complete(cell, order)) => (cell, order),
-            Some(Type::Incomplete) => return Err(source.flaw(Fault::IncompleteElementType(code))),
-            Some(Type::TooHigh) => return Err(source.flaw(Fault::OrderTooHigh(code))),
-            None => return Err(source.flaw(Fault::UnknownElementType(code))),
+            Some(Type::Incomplete) => return Err(source.flaw(MshFault::IncompleteElementType(code))),
+            Some(Type::TooHigh) => return Err(source.flaw(MshFault::OrderTooHigh(code))),
+            None => return Err(source.flaw(MshFault::UnknownElementType(code))),
         };
         let slots = ORDER.slots(cell, order).unwrap_or_default();
         if cell != Cell::Point {
@@ -130,13 +131,8 @@ impl Draft {
     }
 
     /// The finished mesh.
-    pub(super) fn finish(mut self) -> Mesh {
-        self.mesh.order = self.order.unwrap_or_default();
-        self.mesh
+    pub(super) fn finish(mut self) -> Result<Mesh, Inconsistent> {
+        self.parts.order = self.order.unwrap_or_default();
+        Mesh::new(self.parts)
     }
-}
-
-/// A block that has no elements yet.
-pub(super) fn empty_block(cell: Cell, entity: EntityKey) -> Block {
-    Block { cell, entity, physical_tags: Vec::new(), tags: Vec::new(), nodes: Vec::new() }
 }

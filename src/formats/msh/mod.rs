@@ -5,6 +5,7 @@
 //! the mesh itself (`$NodeData`, `$Comments`, ...) are passed over.
 
 mod draft;
+mod fault;
 mod names;
 mod node_order;
 mod node_tags;
@@ -23,6 +24,7 @@ mod tests;
 use std::io::{BufRead, Write};
 
 use draft::Draft;
+use fault::MshFault;
 use sink::{ByteSink, Sink, TextSink};
 use source::{Bytes, Text};
 
@@ -94,22 +96,22 @@ pub fn read(input: impl BufRead, length: u64) -> Result<Mesh, Flaw> {
             continue;
         };
         if seen.contains(&section) {
-            return Err(scanner.flaw(Fault::RepeatedSection(section)));
+            return Err(scanner.flaw(MshFault::RepeatedSection(section)));
         }
         seen.push(section);
         if matches!(section, "Elements" | "Periodic") && !draft.has_nodes() {
-            return Err(scanner.flaw(Fault::SectionOrder { earlier: "Nodes", later: section }));
+            return Err(scanner.flaw(MshFault::SectionOrder { earlier: "Nodes", later: section }));
         }
         read_section(&mut scanner, header, section, &mut draft)?;
         end_section(&mut scanner, section)?;
     }
     if !draft.has_nodes() {
-        return Err(scanner.flaw(Fault::MissingSection("Nodes")));
+        return Err(scanner.flaw(MshFault::MissingSection("Nodes")));
     }
     if !seen.contains(&"Elements") {
-        return Err(scanner.flaw(Fault::MissingSection("Elements")));
+        return Err(scanner.flaw(MshFault::MissingSection("Elements")));
     }
-    Ok(draft.finish())
+    draft.finish().map_err(|cause| scanner.flaw(cause))
 }
 
 /// Sections that say something of the mesh.
@@ -146,10 +148,10 @@ impl Header {
         let version = match version {
             "4.1" => Version::V4_1,
             "2" | "2.0" | "2.1" | "2.2" => Version::V2_2,
-            other => return Err(scanner.flaw(Fault::Version(other.chars().take(40).collect()))),
+            other => return Err(scanner.flaw(MshFault::Version(other.chars().take(40).collect()))),
         };
         if size != 8 {
-            return Err(scanner.flaw(Fault::DataSize(size)));
+            return Err(scanner.flaw(MshFault::DataSize(size)));
         }
         let mut header = Header { version, binary: *binary == "1", swap: false };
         if header.binary {
@@ -157,7 +159,7 @@ impl Header {
             header.swap = match u32::from_le_bytes(scanner.bytes("the byte-order mark")?) {
                 1 => false,
                 0x0100_0000 => true,
-                other => return Err(scanner.flaw(Fault::ByteOrder(other))),
+                other => return Err(scanner.flaw(MshFault::ByteOrder(other))),
             };
         }
         end_section(scanner, "MeshFormat")?;
@@ -174,7 +176,7 @@ fn read_section(
 ) -> Result<(), Flaw> {
     match (header.version, section) {
         (_, "PhysicalNames") => {
-            draft.mesh.physical_names = names::read(scanner)?;
+            draft.parts.physical_names = names::read(scanner)?;
             Ok(())
         }
         (Version::V4_1, _) if header.binary => {
@@ -223,7 +225,7 @@ fn end_section(scanner: &mut Scanner<impl BufRead>, section: &'static str) -> Re
         return Ok(());
     }
     let found = line.chars().take(40).collect();
-    Err(scanner.flaw(Fault::SectionEnd { section: section.into(), found }))
+    Err(scanner.flaw(MshFault::SectionEnd { section: section.into(), found }))
 }
 
 /// Writes a mesh. Equal meshes make equal bytes.
@@ -236,7 +238,7 @@ fn write(out: &mut (impl Write + Send), mesh: &Mesh, version: Version, encoding:
         out.write_all(b"\n")?;
     }
     out.write_all(b"$EndMeshFormat\n")?;
-    names::write(out, &mesh.physical_names)?;
+    names::write(out, mesh.physical_names())?;
     if binary {
         write_sections(&mut ByteSink(out), mesh, version)
     } else {

@@ -1,5 +1,6 @@
 //! From the file's node numbers to places in the list of nodes.
 
+use super::fault::MshFault;
 use crate::formats::error::Fault;
 use crate::mesh::NodeId;
 
@@ -15,7 +16,7 @@ impl NodeTags {
     /// The table of the numbers of nodes 0, 1, ...
     ///
     /// # Errors
-    /// [`Fault::RepeatedNode`]; [`Fault::TooMany`].
+    /// [`MshFault::RepeatedNode`]; [`Fault::TooMany`].
     pub(super) fn new(tags: &[u64]) -> Result<NodeTags, Fault> {
         let first = tags.iter().copied().min().unwrap_or(0);
         let last = tags.iter().copied().max().unwrap_or(0);
@@ -23,7 +24,7 @@ impl NodeTags {
             let mut nodes = vec![None; (last - first) as usize + 1];
             for (n, &tag) in tags.iter().enumerate() {
                 if nodes[(tag - first) as usize].replace(NodeId::new(n)?).is_some() {
-                    return Err(Fault::RepeatedNode(tag));
+                    return Err(MshFault::RepeatedNode(tag).into());
                 }
             }
             return Ok(NodeTags::Dense { first, nodes });
@@ -32,7 +33,7 @@ impl NodeTags {
         let mut sorted = tags.iter().enumerate().map(numbered).collect::<Result<Vec<_>, _>>()?;
         sorted.sort_unstable();
         match sorted.windows(2).find(|pair| pair[0].0 == pair[1].0) {
-            Some(pair) => Err(Fault::RepeatedNode(pair[0].0)),
+            Some(pair) => Err(MshFault::RepeatedNode(pair[0].0).into()),
             None => Ok(NodeTags::Sparse(sorted)),
         }
     }
@@ -70,8 +71,9 @@ mod tests {
 
     #[test]
     fn a_number_that_stands_twice_is_told() {
-        assert!(matches!(NodeTags::new(&[1, 2, 1]), Err(Fault::RepeatedNode(1))));
+        let told = |tags: &[u64]| NodeTags::new(tags).map_or_else(|fault| fault.to_string(), |_| String::new());
         let far = 9_000_000_000;
-        assert!(matches!(NodeTags::new(&[1, far, far]), Err(Fault::RepeatedNode(tag)) if tag == far));
+        assert!(told(&[1, 2, 1]).starts_with("node 1 occurs twice"));
+        assert!(told(&[1, far, far]).starts_with("node 9000000000 occurs twice"));
     }
 }

@@ -36,10 +36,10 @@ impl<'a> Outline<'a> {
         let (blocks, groups) = block_entities(mesh);
         let nodes = node_entities(mesh, &blocks);
         let (tail_start, tail) = tail(mesh, &nodes);
-        let mut parameters = mesh.node_parameters.clone();
+        let mut parameters = mesh.node_parameters().to_vec();
         parameters.sort_by_key(|&(node, _)| node);
         let mut outline = Outline { entities: Vec::new(), blocks, runs: Vec::new(), tail, tail_start, parameters };
-        for place in 0..mesh.points.len() {
+        for place in 0..mesh.points().len() {
             let node = outline.node(place);
             let entity = nodes[node];
             let parametric = matches!(entity.dimension, 1 | 2) && outline.parameters(node).is_some();
@@ -67,8 +67,8 @@ impl<'a> Outline<'a> {
     }
 
     fn all_entities(&self, mesh: &'a Mesh, groups: &BTreeMap<EntityKey, Vec<i32>>) -> Vec<Cow<'a, Entity>> {
-        let mut entities: Vec<Cow<'a, Entity>> = mesh.entities.iter().map(Cow::Borrowed).collect();
-        let known: HashSet<EntityKey> = mesh.entities.iter().map(|e| e.key).collect();
+        let mut entities: Vec<Cow<'a, Entity>> = mesh.entities().iter().map(Cow::Borrowed).collect();
+        let known: HashSet<EntityKey> = mesh.entities().iter().map(|e| e.key).collect();
         let used = self.blocks.iter().copied().chain(self.runs.iter().map(|run| run.entity));
         let mut boxes: BTreeMap<EntityKey, [[f64; 3]; 2]> = used
             .filter(|key| !known.contains(key))
@@ -76,12 +76,12 @@ impl<'a> Outline<'a> {
             .collect();
         let mut grow = |key: EntityKey, node: usize| {
             if let Some([lower, upper]) = boxes.get_mut(&key) {
-                let at = mesh.points[node].to_array();
+                let at = mesh.points()[node].to_array();
                 *lower = std::array::from_fn(|x| lower[x].min(at[x]));
                 *upper = std::array::from_fn(|x| upper[x].max(at[x]));
             }
         };
-        for (block, &key) in mesh.blocks.iter().zip(&self.blocks).filter(|(_, key)| !known.contains(key)) {
+        for (block, &key) in mesh.blocks().iter().zip(&self.blocks).filter(|(_, key)| !known.contains(key)) {
             block.nodes.iter().for_each(|node| grow(key, node.index()));
         }
         for run in self.runs.iter().filter(|run| !known.contains(&run.entity)) {
@@ -103,16 +103,16 @@ impl<'a> Outline<'a> {
 /// MSH 2.2 puts elements, not entities, into groups: where blocks of one entity differ in groups, or the tag is
 /// none that 4.1 allows, the later block moves to an entity of its own with a fresh tag.
 fn block_entities(mesh: &Mesh) -> (Vec<EntityKey>, BTreeMap<EntityKey, Vec<i32>>) {
-    let known: HashSet<EntityKey> = mesh.entities.iter().map(|e| e.key).collect();
+    let known: HashSet<EntityKey> = mesh.entities().iter().map(|e| e.key).collect();
     let mut last = [0; 4];
-    for key in known.iter().copied().chain(mesh.blocks.iter().map(|b| b.entity)) {
+    for key in known.iter().copied().chain(mesh.blocks().iter().map(|b| b.entity)) {
         let largest = &mut last[usize::from(key.dimension)];
         *largest = key.tag.max(*largest);
     }
     let mut groups: BTreeMap<EntityKey, Vec<i32>> = BTreeMap::new();
     let mut moved: BTreeMap<(EntityKey, &[i32]), EntityKey> = BTreeMap::new();
-    let mut keys = Vec::with_capacity(mesh.blocks.len());
-    for block in &mesh.blocks {
+    let mut keys = Vec::with_capacity(mesh.blocks().len());
+    for block in mesh.blocks() {
         let key = block.entity;
         let fits = groups.get(&key).is_none_or(|tags| *tags == block.physical_tags);
         if known.contains(&key) || (key.tag > 0 && fits) {
@@ -134,15 +134,15 @@ fn block_entities(mesh: &Mesh) -> (Vec<EntityKey>, BTreeMap<EntityKey, Vec<i32>>
 /// The entity of each node: what the mesh says, else that of the lowest-dimensional element at the node.
 fn node_entities(mesh: &Mesh, blocks: &[EntityKey]) -> Vec<EntityKey> {
     let fallback = blocks.iter().copied().max_by_key(|key| key.dimension).unwrap_or(EntityKey::new(3, 1));
-    let mut entities: Vec<EntityKey> = vec![fallback; mesh.points.len()];
-    if mesh.node_entities.len() < entities.len() || mesh.node_entities.contains(&None) {
+    let mut entities: Vec<EntityKey> = vec![fallback; mesh.points().len()];
+    if mesh.node_entities().len() < entities.len() || mesh.node_entities().contains(&None) {
         for dimension in (0..=3).rev() {
             for (n, block) in mesh.blocks_of(dimension) {
                 block.nodes.iter().for_each(|node| entities[node.index()] = blocks[n]);
             }
         }
     }
-    for (entity, given) in entities.iter_mut().zip(&mesh.node_entities) {
+    for (entity, given) in entities.iter_mut().zip(mesh.node_entities()) {
         *entity = given.unwrap_or(*entity);
     }
     entities
@@ -153,17 +153,17 @@ fn node_entities(mesh: &Mesh, blocks: &[EntityKey]) -> Vec<EntityKey> {
 /// The linear nodes keep the file's order; the high-order nodes behind them come in any order, and would make a
 /// block each.
 fn tail(mesh: &Mesh, entities: &[EntityKey]) -> (usize, Vec<NodeId>) {
-    if mesh.order == Order::LINEAR {
-        return (mesh.points.len(), Vec::new());
+    if mesh.order() == Order::LINEAR {
+        return (mesh.points().len(), Vec::new());
     }
     let mut start = 0;
-    for block in &mesh.blocks {
-        for nodes in block.elements(mesh.order) {
+    for block in mesh.blocks() {
+        for nodes in block.elements(mesh.order()) {
             let last = nodes[..block.cell.corner_count()].iter().map(|node| node.index() + 1).max();
             start = start.max(last.unwrap_or(0));
         }
     }
-    let mut tail: Vec<NodeId> = (start..mesh.points.len()).filter_map(|n| NodeId::new(n).ok()).collect();
+    let mut tail: Vec<NodeId> = (start..mesh.points().len()).filter_map(|n| NodeId::new(n).ok()).collect();
     tail.sort_by_key(|node| entities[node.index()]);
     (start, tail)
 }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::BufRead;
 
-use super::draft::{Draft, ElementType, empty_block};
+use super::draft::{Draft, ElementType};
 use super::read41::{dimension, periodic_pair};
 use super::source::{Record, Source, Text};
 use crate::formats::error::{Fault, Flaw};
@@ -126,32 +126,32 @@ impl Elements<'_> {
         self.nodes.clear();
         self.draft.push_element(source, head.kind, head.tag, &self.numbers, &mut self.nodes)?;
         if self.joins_last(head) {
-            if let Some(block) = self.draft.mesh.blocks.last_mut() {
+            if let Some(block) = self.draft.parts.blocks.last_mut() {
                 block.tags.push(head.tag);
                 block.nodes.extend_from_slice(&self.nodes);
             }
             return Ok(());
         }
         let entity = EntityKey::new(head.kind.cell.dimension() as u8, head.entity);
-        let mut block = empty_block(head.kind.cell, entity);
+        let mut block = Block::new(head.kind.cell, entity);
         block.tags.push(self.take_repeated(head, &mut block.physical_tags).unwrap_or(head.tag));
         block.nodes.extend_from_slice(&self.nodes);
         if head.physical != 0 {
             block.physical_tags.push(head.physical);
         }
-        match self.draft.mesh.blocks.last_mut() {
+        match self.draft.parts.blocks.last_mut() {
             Some(last) if alike(last, &block) && last.physical_tags == block.physical_tags => {
                 last.tags.append(&mut block.tags);
                 last.nodes.append(&mut block.nodes);
             }
-            _ => self.draft.mesh.blocks.push(block),
+            _ => self.draft.parts.blocks.push(block),
         }
         Ok(())
     }
 
     /// Whether an element goes on with the last block.
     fn joins_last(&self, head: &Head) -> bool {
-        self.draft.mesh.blocks.last().is_some_and(|last| {
+        self.draft.parts.blocks.last().is_some_and(|last| {
             let same_group = match last.physical_tags[..] {
                 [] => head.physical == 0,
                 [group] => head.physical == group,
@@ -164,7 +164,7 @@ impl Elements<'_> {
     /// Takes back the last element where the present one is the same in another physical group: its number, and
     /// the groups it was in.
     fn take_repeated(&mut self, head: &Head, groups: &mut Vec<i32>) -> Option<u64> {
-        let blocks = &mut self.draft.mesh.blocks;
+        let blocks = &mut self.draft.parts.blocks;
         let last = blocks.last_mut()?;
         let same = last.cell == head.kind.cell && last.entity.tag == head.entity && last.nodes.ends_with(&self.nodes);
         if !same || head.physical == 0 || last.physical_tags.is_empty() || last.physical_tags.contains(&head.physical) {
@@ -183,7 +183,7 @@ impl Elements<'_> {
     fn finish(self) {
         let mut rivals: HashMap<u64, Vec<usize>> = HashMap::new();
         let mut united: Vec<Block> = Vec::new();
-        for block in self.draft.mesh.blocks.drain(..) {
+        for block in self.draft.parts.blocks.drain(..) {
             let mut hasher = DefaultHasher::new();
             (block.cell, block.entity, &block.nodes).hash(&mut hasher);
             let rivals = rivals.entry(hasher.finish()).or_default();
@@ -200,7 +200,7 @@ impl Elements<'_> {
                 }
             }
         }
-        self.draft.mesh.blocks = united;
+        self.draft.parts.blocks = united;
     }
 }
 
@@ -235,7 +235,7 @@ pub(super) fn periodic<R: BufRead>(scanner: &mut Scanner<R>, draft: &mut Draft) 
             let pair = [source.size("periodic nodes")?, source.size("periodic nodes")?];
             pairs.push(periodic_pair(&source, draft, slave, pair)?);
         }
-        draft.mesh.periodic.push(Periodic { slave, master, affine, pairs });
+        draft.parts.periodic.push(Periodic { slave, master, affine, pairs });
     }
     Ok(())
 }

@@ -1,15 +1,16 @@
 //! Sections of MSH 4.1.
 
-use super::draft::{Draft, empty_block};
+use super::draft::Draft;
+use super::fault::MshFault;
 use super::source::{Record, Source};
 use crate::formats::error::{Fault, Flaw};
-use crate::mesh::{Entity, EntityKey, Periodic};
+use crate::mesh::{Block, Entity, EntityKey, Periodic};
 
 /// A dimension, 0 to 3.
 pub(super) fn dimension(source: &mut impl Source) -> Result<u8, Flaw> {
     match source.int("a dimension")? {
         known @ 0..=3 => Ok(known as u8),
-        other => Err(source.flaw(Fault::EntityDimension(other))),
+        other => Err(source.flaw(MshFault::EntityDimension(other))),
     }
 }
 
@@ -23,7 +24,7 @@ pub(super) fn entities(source: &mut impl Source, draft: &mut Draft) -> Result<()
         for _ in 0..count {
             let tag = source.int("an entity tag")?;
             let entity = entity_body(source, EntityKey::new(dimension, tag))?;
-            draft.mesh.entities.push(entity);
+            draft.parts.entities.push(entity);
         }
     }
     Ok(())
@@ -78,9 +79,9 @@ pub(super) fn nodes(source: &mut impl Source, draft: &mut Draft) -> Result<(), F
     let announced = source.count("nodes", node)?;
     source.size("the smallest node number")?;
     source.size("the largest node number")?;
-    draft.mesh.points.reserve_exact(announced);
-    draft.mesh.node_tags.reserve_exact(announced);
-    draft.mesh.node_entities.reserve_exact(announced);
+    draft.parts.points.reserve_exact(announced);
+    draft.parts.node_tags.reserve_exact(announced);
+    draft.parts.node_entities.reserve_exact(announced);
     let mut tags = Vec::new();
     for _ in 0..blocks {
         let key = entity_key(source)?;
@@ -106,7 +107,7 @@ pub(super) fn nodes(source: &mut impl Source, draft: &mut Draft) -> Result<(), F
             }
         }
     }
-    let found = draft.mesh.points.len() as u64;
+    let found = draft.parts.points.len() as u64;
     if found != announced as u64 {
         return Err(source.flaw(Fault::Miscounted { what: "nodes", announced: announced as u64, found }));
     }
@@ -128,14 +129,14 @@ pub(super) fn elements(source: &mut impl Source, draft: &mut Draft) -> Result<()
         let code = source.int("an element type")?;
         let kind = draft.element_type(source, code)?;
         if kind.cell.dimension() != usize::from(key.dimension) {
-            return Err(source.flaw(Fault::ElementDimension { entity: key, found: kind.cell.dimension() }));
+            return Err(source.flaw(MshFault::ElementDimension { entity: key, found: kind.cell.dimension() }));
         }
         let node_count = kind.node_count();
         let record = Record { sizes: 1 + node_count as u64, ..Record::default() };
         let count = source.count("elements", record)?;
         found += count as u64;
         let parent = draft.parent(key);
-        let mut block = empty_block(kind.cell, parent);
+        let mut block = Block::new(kind.cell, parent);
         block.tags.reserve_exact(count);
         block.nodes.reserve_exact(count * node_count);
         let mut numbers = vec![0; node_count];
@@ -148,7 +149,7 @@ pub(super) fn elements(source: &mut impl Source, draft: &mut Draft) -> Result<()
             draft.push_element(source, kind, tag, &numbers, &mut block.nodes)?;
         }
         if parent.dimension == key.dimension {
-            draft.mesh.blocks.push(block);
+            draft.parts.blocks.push(block);
         }
     }
     if found != announced {
@@ -173,7 +174,7 @@ pub(super) fn periodic(source: &mut impl Source, draft: &mut Draft) -> Result<()
         }
         let master = draft.parent(EntityKey::new(slave.dimension, master)).tag;
         let slave = draft.parent(slave);
-        draft.mesh.periodic.push(Periodic { slave, master, affine, pairs });
+        draft.parts.periodic.push(Periodic { slave, master, affine, pairs });
     }
     Ok(())
 }

@@ -27,7 +27,7 @@ pub(super) trait Source {
     /// A C `double`.
     fn real(&mut self, what: &'static str) -> Result<f64, Flaw>;
     /// A fault at the present place.
-    fn flaw(&self, fault: Fault) -> Flaw;
+    fn flaw(&self, fault: impl Into<Fault>) -> Flaw;
     /// Bytes not yet read, and the least bytes that a record takes.
     fn room(&self, record: Record) -> (u64, u64);
 
@@ -76,7 +76,7 @@ impl<R: BufRead> Source for Text<'_, R> {
     fn real(&mut self, what: &'static str) -> Result<f64, Flaw> {
         self.0.number(what)
     }
-    fn flaw(&self, fault: Fault) -> Flaw {
+    fn flaw(&self, fault: impl Into<Fault>) -> Flaw {
         self.0.flaw(fault)
     }
     fn room(&self, record: Record) -> (u64, u64) {
@@ -110,7 +110,7 @@ impl<R: BufRead> Source for Bytes<'_, R> {
     fn real(&mut self, what: &'static str) -> Result<f64, Flaw> {
         self.take(what).map(f64::from_le_bytes)
     }
-    fn flaw(&self, fault: Fault) -> Flaw {
+    fn flaw(&self, fault: impl Into<Fault>) -> Flaw {
         self.scanner.flaw(fault)
     }
     fn room(&self, record: Record) -> (u64, u64) {

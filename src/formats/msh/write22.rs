@@ -24,8 +24,8 @@ fn int(value: u64) -> Result<i32, Unwritten> {
 
 fn nodes(sink: &mut impl Sink, mesh: &Mesh) -> Result<(), Unwritten> {
     sink.open("Nodes")?;
-    sink.text(&format!("{}\n", mesh.points.len()))?;
-    for (&tag, point) in mesh.node_tags.iter().zip(&mesh.points) {
+    sink.text(&format!("{}\n", mesh.points().len()))?;
+    for (&tag, point) in mesh.node_tags().iter().zip(mesh.points()) {
         sink.int(int(tag)?)?;
         sink.reals(&point.to_array())?;
         sink.end_line()?;
@@ -46,20 +46,20 @@ fn groups(entities: &HashMap<EntityKey, &Entity>, block: &Block) -> Vec<i32> {
 
 /// An element in several groups stands once for each: first under its own number, then under new ones.
 fn elements<S: Sink>(sink: &mut S, mesh: &Mesh) -> Result<(), Unwritten> {
-    let entities: HashMap<EntityKey, &Entity> = mesh.entities.iter().map(|e| (e.key, e)).collect();
-    let groups: Vec<Vec<i32>> = mesh.blocks.iter().map(|block| groups(&entities, block)).collect();
-    let count: usize = mesh.blocks.iter().zip(&groups).map(|(block, groups)| block.tags.len() * groups.len()).sum();
-    let mut last = mesh.blocks.iter().flat_map(|b| &b.tags).copied().max().unwrap_or(0);
+    let entities: HashMap<EntityKey, &Entity> = mesh.entities().iter().map(|e| (e.key, e)).collect();
+    let groups: Vec<Vec<i32>> = mesh.blocks().iter().map(|block| groups(&entities, block)).collect();
+    let count: usize = mesh.blocks().iter().zip(&groups).map(|(block, groups)| block.tags.len() * groups.len()).sum();
+    let mut last = mesh.blocks().iter().flat_map(|b| &b.tags).copied().max().unwrap_or(0);
     sink.open("Elements")?;
     sink.text(&format!("{count}\n"))?;
-    for (block, groups) in mesh.blocks.iter().zip(&groups) {
+    for (block, groups) in mesh.blocks().iter().zip(&groups) {
         let slots = slots(mesh, block)?;
         for (n, &group) in groups.iter().enumerate() {
-            let head = [type_code::of(block.cell, mesh.order), int(block.tags.len() as u64)?, 2];
+            let head = [type_code::of(block.cell, mesh.order()), int(block.tags.len() as u64)?, 2];
             if S::BINARY && !block.tags.is_empty() {
                 head.iter().try_for_each(|&value| sink.int(value))?;
             }
-            for (&tag, nodes) in block.tags.iter().zip(block.elements(mesh.order)) {
+            for (&tag, nodes) in block.tags.iter().zip(block.elements(mesh.order())) {
                 let tag = if n == 0 {
                     tag
                 } else {
@@ -74,7 +74,7 @@ fn elements<S: Sink>(sink: &mut S, mesh: &Mesh) -> Result<(), Unwritten> {
                 sink.int(group)?;
                 sink.int(block.entity.tag)?;
                 for &slot in slots {
-                    sink.int(int(mesh.node_tags[nodes[usize::from(slot)].index()])?)?;
+                    sink.int(int(mesh.node_tags()[nodes[usize::from(slot)].index()])?)?;
                 }
                 sink.end_line()?;
             }
@@ -85,11 +85,11 @@ fn elements<S: Sink>(sink: &mut S, mesh: &Mesh) -> Result<(), Unwritten> {
 
 /// Text in both encodings.
 fn periodic(sink: &mut impl Sink, mesh: &Mesh) -> Result<(), Unwritten> {
-    if mesh.periodic.is_empty() {
+    if mesh.periodic().is_empty() {
         return Ok(());
     }
-    sink.text(&format!("$Periodic\n{}\n", mesh.periodic.len()))?;
-    for link in &mesh.periodic {
+    sink.text(&format!("$Periodic\n{}\n", mesh.periodic().len()))?;
+    for link in mesh.periodic() {
         sink.text(&format!("{} {} {}\n", link.slave.dimension, link.slave.tag, link.master))?;
         if !link.affine.is_empty() {
             let values: Vec<String> = link.affine.iter().map(|x| format!("{x:?}")).collect();
@@ -97,7 +97,7 @@ fn periodic(sink: &mut impl Sink, mesh: &Mesh) -> Result<(), Unwritten> {
         }
         sink.text(&format!("{}\n", link.pairs.len()))?;
         for &(a, b) in &link.pairs {
-            sink.text(&format!("{} {}\n", mesh.node_tags[a.index()], mesh.node_tags[b.index()]))?;
+            sink.text(&format!("{} {}\n", mesh.node_tags()[a.index()], mesh.node_tags()[b.index()]))?;
         }
     }
     Ok(sink.text("$EndPeriodic\n")?)

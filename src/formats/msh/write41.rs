@@ -52,7 +52,7 @@ fn head(sink: &mut impl Sink, blocks: usize, tags: impl Iterator<Item = u64> + C
 
 fn nodes(sink: &mut impl Sink, mesh: &Mesh, outline: &Outline) -> io::Result<()> {
     sink.open("Nodes")?;
-    head(sink, outline.runs.len(), mesh.node_tags.iter().copied())?;
+    head(sink, outline.runs.len(), mesh.node_tags().iter().copied())?;
     for run in &outline.runs {
         let node = |n: usize| outline.node(run.places.start + n);
         sink.int(i32::from(run.entity.dimension))?;
@@ -61,11 +61,11 @@ fn nodes(sink: &mut impl Sink, mesh: &Mesh, outline: &Outline) -> io::Result<()>
         sink.size(run.places.len() as u64)?;
         sink.end_line()?;
         sink.rows(run.places.len(), |sink, n| {
-            sink.size(mesh.node_tags[node(n)])?;
+            sink.size(mesh.node_tags()[node(n)])?;
             sink.end_line()
         })?;
         sink.rows(run.places.len(), |sink, n| {
-            sink.reals(&mesh.points[node(n)].to_array())?;
+            sink.reals(&mesh.points()[node(n)].to_array())?;
             if let Some(uv) = outline.parameters(node(n)).filter(|_| run.parametric) {
                 sink.reals(&uv[..usize::from(run.entity.dimension)])?;
             }
@@ -77,19 +77,19 @@ fn nodes(sink: &mut impl Sink, mesh: &Mesh, outline: &Outline) -> io::Result<()>
 
 fn elements(sink: &mut impl Sink, mesh: &Mesh, outline: &Outline) -> Result<(), Unwritten> {
     sink.open("Elements")?;
-    head(sink, mesh.blocks.len(), mesh.blocks.iter().flat_map(|b| b.tags.iter().copied()))?;
-    for (block, entity) in mesh.blocks.iter().zip(&outline.blocks) {
+    head(sink, mesh.blocks().len(), mesh.blocks().iter().flat_map(|b| b.tags.iter().copied()))?;
+    for (block, entity) in mesh.blocks().iter().zip(&outline.blocks) {
         let slots = slots(mesh, block)?;
         sink.int(i32::from(entity.dimension))?;
         sink.int(entity.tag)?;
-        sink.int(type_code::of(block.cell, mesh.order))?;
+        sink.int(type_code::of(block.cell, mesh.order()))?;
         sink.size(block.tags.len() as u64)?;
         sink.end_line()?;
-        let stride = block.stride(mesh.order);
+        let stride = block.stride(mesh.order());
         sink.rows(block.tags.len(), |sink, n| {
             sink.size(block.tags[n])?;
             let nodes = &block.nodes[n * stride..][..stride];
-            slots.iter().try_for_each(|&slot| sink.size(mesh.node_tags[nodes[usize::from(slot)].index()]))?;
+            slots.iter().try_for_each(|&slot| sink.size(mesh.node_tags()[nodes[usize::from(slot)].index()]))?;
             sink.end_line()
         })?;
     }
@@ -98,18 +98,18 @@ fn elements(sink: &mut impl Sink, mesh: &Mesh, outline: &Outline) -> Result<(), 
 
 /// Gmsh's node order for a block.
 pub(super) fn slots(mesh: &Mesh, block: &crate::mesh::Block) -> Result<&'static [u8], Unwritten> {
-    let missing = || Unwritten::Inexpressible(format!("MSH has no {} of {}", block.cell, mesh.order));
-    ORDER.slots(block.cell, mesh.order).ok_or_else(missing)
+    let missing = || Unwritten::Inexpressible(format!("MSH has no {} of {}", block.cell, mesh.order()));
+    ORDER.slots(block.cell, mesh.order()).ok_or_else(missing)
 }
 
 fn periodic(sink: &mut impl Sink, mesh: &Mesh) -> io::Result<()> {
-    if mesh.periodic.is_empty() {
+    if mesh.periodic().is_empty() {
         return Ok(());
     }
     sink.open("Periodic")?;
-    sink.size(mesh.periodic.len() as u64)?;
+    sink.size(mesh.periodic().len() as u64)?;
     sink.end_line()?;
-    for link in &mesh.periodic {
+    for link in mesh.periodic() {
         sink.int(i32::from(link.slave.dimension))?;
         sink.int(link.slave.tag)?;
         sink.int(link.master)?;
@@ -120,8 +120,8 @@ fn periodic(sink: &mut impl Sink, mesh: &Mesh) -> io::Result<()> {
         sink.size(link.pairs.len() as u64)?;
         sink.end_line()?;
         for &(a, b) in &link.pairs {
-            sink.size(mesh.node_tags[a.index()])?;
-            sink.size(mesh.node_tags[b.index()])?;
+            sink.size(mesh.node_tags()[a.index()])?;
+            sink.size(mesh.node_tags()[b.index()])?;
             sink.end_line()?;
         }
     }

@@ -112,13 +112,13 @@ pub(super) fn mesh(blocks: Vec<Block>) -> Result<Mesh, Fault> {
     notes(&mut assembly, &blocks, joined, collapsed);
     if blocks.len() > 1 || joined > 0 {
         let name = |b: usize| format!("/Base/blk-{}", b + 1);
-        assembly.mesh.zones = nodes.into_iter().enumerate().map(|(b, nodes)| Zone { name: name(b), nodes }).collect();
+        assembly.parts.zones = nodes.into_iter().enumerate().map(|(b, nodes)| Zone { name: name(b), nodes }).collect();
     }
-    Ok(assembly.finish())
+    assembly.finish()
 }
 
 fn notes(assembly: &mut Assembly, blocks: &[Block], joined: usize, collapsed: usize) {
-    let notes = &mut assembly.mesh.notes;
+    let notes = &mut assembly.parts.notes;
     if joined > 0 {
         notes.push(format!("{joined} points on block sides coincide exactly with others and were merged with them"));
     }

@@ -1,5 +1,7 @@
 //! SU2's native meshes, read: text, linear, boundary elements by marker.
 
+mod fault;
+
 use std::collections::HashMap;
 use std::io::BufRead;
 
@@ -14,6 +16,7 @@ use super::vtk::node_order::ORDER;
 use super::vtk::type_code::{self, Type};
 use crate::element::{Cell, Order};
 use crate::mesh::{EntityKey, Mesh, NodeId};
+use fault::Su2Fault;
 
 /// The native format of the solver SU2.
 pub(super) static FORMAT: Format = Format {
@@ -80,7 +83,7 @@ struct File<R> {
 }
 
 impl<R: BufRead> File<R> {
-    fn flaw(&self, fault: Fault) -> Flaw {
+    fn flaw(&self, fault: impl Into<Fault>) -> Flaw {
         self.scanner.flaw(fault)
     }
 
@@ -163,7 +166,7 @@ impl<R: BufRead> File<R> {
 
     fn read_points(&mut self, value: &str) -> Result<(), Flaw> {
         if self.dimension == 0 {
-            return Err(self.flaw(Fault::SectionOrder { earlier: "NDIME", later: "NPOIN" }));
+            return Err(self.flaw(Su2Fault::Order { earlier: "NDIME", later: "NPOIN" }));
         }
         let count = self.count("points", value)?;
         let mut points = Vec::with_capacity(count.min(1 << 20));
@@ -206,7 +209,7 @@ impl<R: BufRead> File<R> {
             matches!(type_code::meaning(code, cell.corner_count()), Type::Complete(c, Order::LINEAR) if c == *cell)
         });
         let Some(cell) = known else {
-            return Err(self.flaw(Fault::UnknownElementType(i32::try_from(code).unwrap_or(i32::MAX))));
+            return Err(self.flaw(Su2Fault::UnknownElementType(code)));
         };
         let mut nodes = [0; 8];
         for node in &mut nodes[..cell.corner_count()] {
@@ -217,7 +220,7 @@ impl<R: BufRead> File<R> {
 
     fn mesh(mut self) -> Result<Mesh, Flaw> {
         let Some(points) = self.points.take() else {
-            return Err(self.flaw(Fault::MissingSection("NPOIN")));
+            return Err(self.flaw(Su2Fault::Missing("NPOIN")));
         };
         let count = points.len();
         let flaw = |fault| self.scanner.flaw(fault);
@@ -250,6 +253,6 @@ impl<R: BufRead> File<R> {
                 assembly.entity(EntityKey::new(dimension, tag), vec![group]);
             }
         }
-        Ok(assembly.finish())
+        assembly.finish().map_err(|fault| self.scanner.flaw(fault))
     }
 }

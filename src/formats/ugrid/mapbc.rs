@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::formats::error::{Error, Fault, Flaw, Place};
-use crate::mesh::{Condition, Mesh, PhysicalName};
+use crate::mesh::{Condition, Parts, PhysicalName};
 
 /// A line: the surface's condition and name.
 struct Surface {
@@ -16,7 +16,7 @@ struct Surface {
 const LARGEST: u64 = 64 << 20;
 
 /// Names the mesh's surfaces as the file beside it does; notes where there is none.
-pub(super) fn apply(mesh: &mut Mesh, path: &Path) -> Result<(), Error> {
+pub(super) fn apply(mesh: &mut Parts, path: &Path) -> Result<(), Error> {
     let Some(file) = beside(path) else {
         mesh.notes.push("no .mapbc file beside the mesh: its surfaces have numbers but no names".into());
         return Ok(());
@@ -72,7 +72,7 @@ fn parse(text: &str) -> Result<BTreeMap<i32, Surface>, Flaw> {
 }
 
 /// Surfaces of one name become one group, with the number of the first of them.
-fn name(mesh: &mut Mesh, surfaces: &BTreeMap<i32, Surface>) {
+fn name(mesh: &mut Parts, surfaces: &BTreeMap<i32, Surface>) {
     let mut groups: BTreeMap<&str, i32> = BTreeMap::new();
     let mut missing = Vec::new();
     for entity in mesh.entities.iter_mut().filter(|entity| entity.key.dimension == 2) {

@@ -17,7 +17,7 @@ use super::format::{Format, Holds, Input, Reader};
 use super::node_order::NodeOrder;
 use super::numbers::Numbers;
 use crate::element::{Cell, Order};
-use crate::mesh::{EntityKey, Mesh, NodeId};
+use crate::mesh::{EntityKey, Mesh, NodeId, Parts};
 
 /// The format of AFLR3, FUN3D and others.
 pub(super) static FORMAT: Format = Format {
@@ -54,16 +54,17 @@ fn open(input: Input, _: &super::ReadOptions) -> Result<Mesh, Error> {
     let Input { path, length, head, content } = input;
     let encoding = kind::encoding(path, &head, length);
     let encoding = encoding.map_err(|reason| Error::Format { file: path.to_path_buf(), reason })?;
-    let mut mesh = read(&mut Numbers::new(content, length, encoding)).map_err(|flaw| flaw.of(path))?;
-    mapbc::apply(&mut mesh, path)?;
-    Ok(mesh)
+    let mut numbers = Numbers::new(content, length, encoding);
+    let mut parts = read(&mut numbers).map_err(|flaw| flaw.of(path))?;
+    mapbc::apply(&mut parts, path)?;
+    Mesh::new(parts).map_err(|cause| numbers.flaw(cause).of(path))
 }
 
 /// Reads a mesh from a file's content.
 ///
 /// # Errors
 /// The first [`Fault`] and its place. Memory stays within a small multiple of the file's length.
-fn read(numbers: &mut Numbers<impl BufRead>) -> Result<Mesh, Flaw> {
+fn read(numbers: &mut Numbers<impl BufRead>) -> Result<Parts, Flaw> {
     numbers.begin_record("the counts")?;
     let mut counts = [0; 7];
     for count in &mut counts {
@@ -95,12 +96,12 @@ fn read(numbers: &mut Numbers<impl BufRead>) -> Result<Mesh, Flaw> {
     }
     // Behind the cells some writers add what is not needed here: volume numbers, layers, spacings.
     numbers.end_record("the mesh", false)?;
-    let mut surfaces: Vec<EntityKey> = assembly.mesh.blocks.iter().map(|block| block.entity).collect();
+    let mut surfaces: Vec<EntityKey> = assembly.parts.blocks.iter().map(|block| block.entity).collect();
     surfaces.retain(|key| key.dimension == 2);
     surfaces.sort_unstable();
     surfaces.dedup();
     surfaces.into_iter().for_each(|key| assembly.entity(key, vec![key.tag]));
-    Ok(assembly.finish())
+    Ok(assembly.complete())
 }
 
 /// The number of the surface that a face belongs to.

@@ -2,6 +2,7 @@
 
 use std::io::{Cursor, Read, Write};
 
+use super::fault::VtkFault;
 use crate::formats::error::Fault;
 
 /// Which compressor a file names.
@@ -25,7 +26,7 @@ impl Compressor {
 
     /// Appends the content of a block, which is `size` bytes long.
     pub(super) fn expand(self, block: &[u8], size: u64, content: &mut Vec<u8>) -> Result<(), Fault> {
-        let damaged = |cause: String| Fault::Compressed(cause);
+        let damaged = |cause: String| VtkFault::Compressed(cause);
         let before = content.len();
         match self {
             Compressor::Zlib => {

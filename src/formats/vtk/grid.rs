@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
+use super::fault::VtkFault;
 use super::node_order::{BEFORE_21, ORDER};
 use super::type_code::{self, Type};
 use crate::formats::assembly::{Assembly, node_of};
@@ -70,9 +71,12 @@ impl Grid {
         }
         tags.into_iter().for_each(|(key, tags)| assembly.entity(key, tags));
         if entities.is_none() {
-            assembly.mesh.notes.push("the file has no cell array that tells patches apart (CellEntityIds, ...)".into());
+            assembly
+                .parts
+                .notes
+                .push("the file has no cell array that tells patches apart (CellEntityIds, ...)".into());
         }
-        Ok(assembly.finish())
+        assembly.finish()
     }
 
     /// A cell's kind; its nodes in internal order go to `nodes`.
@@ -86,9 +90,9 @@ impl Grid {
     ) -> Result<crate::element::Cell, Fault> {
         let (cell, order) = match type_code::meaning(code, numbers.len()) {
             Type::Complete(cell, order) => (cell, order),
-            Type::Incomplete => return Err(Fault::IncompleteCell { tag, code }),
-            Type::Count => return Err(Fault::CellNodes { tag, code, found: numbers.len() }),
-            Type::Unknown => return Err(Fault::UnknownCell { tag, code }),
+            Type::Incomplete => return Err(VtkFault::IncompleteCell { tag, code }.into()),
+            Type::Count => return Err(VtkFault::CellNodes { tag, code, found: numbers.len() }.into()),
+            Type::Unknown => return Err(VtkFault::UnknownCell { tag, code }.into()),
         };
         assembly.set_order(cell, order)?;
         let file_order = if self.old_hexes { &BEFORE_21 } else { &ORDER };
@@ -96,7 +100,7 @@ impl Grid {
         nodes.clear();
         nodes.resize(numbers.len(), NodeId::default());
         for (&slot, &number) in slots.iter().zip(numbers) {
-            nodes[usize::from(slot)] = node_of(assembly.mesh.points.len(), number, 0, tag)?;
+            nodes[usize::from(slot)] = node_of(assembly.parts.points.len(), number, 0, tag)?;
         }
         Ok(cell)
     }

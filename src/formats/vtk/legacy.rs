@@ -59,7 +59,7 @@ struct File<R> {
 }
 
 impl<R: BufRead> File<R> {
-    fn flaw(&self, fault: Fault) -> Flaw {
+    fn flaw(&self, fault: impl Into<Fault>) -> Flaw {
         self.scanner.flaw(fault)
     }
 

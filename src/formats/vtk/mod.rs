@@ -2,6 +2,7 @@
 
 mod array;
 mod compressed;
+mod fault;
 mod grid;
 mod legacy;
 pub(super) mod node_order;

@@ -107,17 +107,17 @@ impl Array<'_> {
 
 impl<'a> Grid<'a> {
     fn new(mesh: &'a Mesh, volume_only: bool) -> Grid<'a> {
-        let top = mesh.blocks.iter().map(|b| b.cell.dimension()).max().unwrap_or(0);
-        let entities: HashMap<EntityKey, &Entity> = mesh.entities.iter().map(|e| (e.key, e)).collect();
-        let wanted = mesh.blocks.iter().filter(|b| !volume_only || b.cell.dimension() == top);
+        let top = mesh.blocks().iter().map(|b| b.cell.dimension()).max().unwrap_or(0);
+        let entities: HashMap<EntityKey, &Entity> = mesh.entities().iter().map(|e| (e.key, e)).collect();
+        let wanted = mesh.blocks().iter().filter(|b| !volume_only || b.cell.dimension() == top);
         let part = |block: &'a Block| {
-            let (vtk, shown) = Shown::new(block.cell, mesh.order);
+            let (vtk, shown) = Shown::new(block.cell, mesh.order());
             Part { block, patch: patch(&entities, block), vtk, shown }
         };
         let parts: Vec<Part> = wanted.map(part).collect();
         let cells = parts.iter().map(|part| part.block.tags.len()).sum();
         let added = parts.iter().filter(|part| matches!(part.shown, Shown::Points(_)));
-        let points = mesh.points.len() + added.map(|part| part.block.tags.len() * part.shown.stride()).sum::<usize>();
+        let points = mesh.points().len() + added.map(|part| part.block.tags.len() * part.shown.stride()).sum::<usize>();
         Grid { mesh, top, parts, points, cells }
     }
 
@@ -125,7 +125,7 @@ impl<'a> Grid<'a> {
     fn check(&self, fields: &[Field]) -> Result<(), Unwritten> {
         for field in fields {
             let (what, needed) = match field.support {
-                Support::Points => ("points", self.mesh.points.len()),
+                Support::Points => ("points", self.mesh.points().len()),
                 Support::Elements => ("elements", self.mesh.element_count(self.top)),
             };
             if field.values.len() != needed {
@@ -215,7 +215,7 @@ impl<'a> Grid<'a> {
             Content::Entity => self.each_cell(|part, _| out.write_all(&part.block.entity.tag.to_le_bytes())),
             Content::Patch => self.each_cell(|part, _| out.write_all(&part.patch.to_le_bytes())),
             Content::Points => self.each_point(|terms| {
-                let at = |axis: usize| sum(terms, |n| self.mesh.points[n][axis]).to_le_bytes();
+                let at = |axis: usize| sum(terms, |n| self.mesh.points()[n][axis]).to_le_bytes();
                 (0..3).try_for_each(|axis| out.write_all(&at(axis)))
             }),
             Content::Connectivity => self.connectivity(out),
@@ -232,11 +232,11 @@ impl<'a> Grid<'a> {
 
     /// Visits every written point as a weighted sum of nodes: the mesh's points first, then those of pyramids.
     fn each_point(&self, mut visit: impl FnMut(&[(usize, f64)]) -> io::Result<()>) -> io::Result<()> {
-        (0..self.mesh.points.len()).try_for_each(|n| visit(&[(n, 1.0)]))?;
+        (0..self.mesh.points().len()).try_for_each(|n| visit(&[(n, 1.0)]))?;
         let mut terms = Vec::new();
         for part in &self.parts {
             let Shown::Points(points) = &part.shown else { continue };
-            for nodes in part.block.elements(self.mesh.order) {
+            for nodes in part.block.elements(self.mesh.order()) {
                 for weights in points {
                     terms.clear();
                     terms.extend(nodes.iter().zip(weights).map(|(node, &weight)| (node.index(), weight)));
@@ -260,9 +260,9 @@ impl<'a> Grid<'a> {
     }
 
     fn connectivity(&self, out: &mut impl Write) -> io::Result<()> {
-        let mut added = self.mesh.points.len();
+        let mut added = self.mesh.points().len();
         for part in &self.parts {
-            for nodes in part.block.elements(self.mesh.order) {
+            for nodes in part.block.elements(self.mesh.order()) {
                 match &part.shown {
                     Shown::Slots(slots) => {
                         for &slot in *slots {

@@ -9,6 +9,7 @@ use quick_xml::events::{BytesStart, Event};
 
 use super::array::{Number, Values};
 use super::compressed::Compressor;
+use super::fault::VtkFault;
 use super::grid::{ENTITY_ARRAYS, GROUP_ARRAYS, Grid};
 use crate::formats::error::{Fault, Flaw, Place};
 use crate::mesh::Mesh;
@@ -85,7 +86,7 @@ struct File<'a> {
 }
 
 impl File<'_> {
-    fn flaw(&self, fault: Fault) -> Flaw {
+    fn flaw(&self, fault: impl Into<Fault>) -> Flaw {
         Flaw::new(Place::Byte(self.place), fault)
     }
 
@@ -94,7 +95,7 @@ impl File<'_> {
         reader.config_mut().check_end_names = false;
         loop {
             self.place = reader.buffer_position();
-            let event = reader.read_event().map_err(|error| self.flaw(Fault::Xml(error.to_string())))?;
+            let event = reader.read_event().map_err(|error| self.flaw(VtkFault::Xml(error.to_string())))?;
             match event {
                 Event::Start(start) => {
                     self.start(&start)?;
@@ -139,7 +140,7 @@ impl File<'_> {
                 let mut parts = version.split('.').map(|part| part.parse::<u32>().unwrap_or(0));
                 self.grid.old_hexes = (parts.next().unwrap_or(0), parts.next().unwrap_or(0)) < (2, 1);
                 if let Some(name) = text("compressor") {
-                    let known = Compressor::of(&name).ok_or(Fault::Compressed(format!("{name} is not known")));
+                    let known = Compressor::of(&name).ok_or(VtkFault::Compressed(format!("{name} is not known")));
                     self.compressor = Some(known.map_err(|fault| self.flaw(fault))?);
                 }
             }
@@ -318,8 +319,8 @@ impl<'a> Source<'a> {
 /// Base64 of which only the beginning may be asked for: what stands behind the padding is not looked at.
 fn decode(quads: &[u8]) -> Result<Vec<u8>, Fault> {
     let end = quads.chunks_exact(4).position(|quad| quad[3] == b'=').map_or(quads.len(), |n| 4 * n + 4);
-    let damaged = |error: base64::DecodeError| Fault::Compressed(error.to_string());
+    let damaged = |error: base64::DecodeError| VtkFault::Compressed(error.to_string());
     let bits = GeneralPurposeConfig::new().with_decode_allow_trailing_bits(true);
     let engine = GeneralPurpose::new(&base64::alphabet::STANDARD, bits);
-    engine.decode(&quads[..end]).map_err(damaged)
+    Ok(engine.decode(&quads[..end]).map_err(damaged)?)
 }

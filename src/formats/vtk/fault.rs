@@ -1,0 +1,24 @@
+//! What is wrong with a VTK file's content.
+
+/// What can be wrong with a VTK file beside what can be wrong with any file.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum VtkFault {
+    #[error(
+        "cell {tag} is of type {code}, which leaves out interior nodes or is not a Lagrange cell; write Lagrange or linear cells"
+    )]
+    IncompleteCell { tag: u64, code: i64 },
+    #[error(
+        "cell {tag} is of type {code}: polygons, polyhedra, strips and voxels are not read; write tets, pyramids, prisms, hexes"
+    )]
+    UnknownCell { tag: u64, code: i64 },
+    #[error(
+        "cell {tag} of type {code} has {found} nodes, which fits no order from 1 to 4; its writer does not support such cells: export the mesh as MSH or CGNS"
+    )]
+    CellNodes { tag: u64, code: i64, found: usize },
+    #[error("an array cannot be decoded ({0}): the file is damaged")]
+    Compressed(String),
+    #[error("the XML is damaged: {0}")]
+    Xml(String),
+}
+
+crate::formats::error::own!(VtkFault);
