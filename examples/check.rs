@@ -6,11 +6,12 @@ use sagitta::formats;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path = std::env::args().nth(1).unwrap_or("fixtures/samples/prism_p3.cgns".into());
     let mesh = formats::read(path.as_ref())?;
-    let certificate = certify::mesh(&mesh, &mesh.points, None, &Settings::default());
+    let certificate = certify::mesh(&mesh, mesh.points(), None, &Settings::default());
     let bounds = certificate.relative;
     println!("min J/Jc between {:.4} and {:.4}", bounds.lower, bounds.upper);
-    for element in &certificate.failures {
-        println!("not proven valid: {} {}", element.cell, element.element);
+    let cells = mesh.cells();
+    for judged in &certificate.failures {
+        println!("not proven valid: {} {}", judged.cell, cells.get(judged.element).tag);
     }
     Ok(())
 }

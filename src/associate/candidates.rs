@@ -2,7 +2,7 @@
 
 use cad::{EdgeId, EntityId, FaceId, Model, VertexId};
 
-use crate::element::Order;
+use crate::element::Cell;
 use crate::mesh::{Boundary, EntityKey, Mesh, NodeId, Periodic};
 
 /// Mesh items that are said to lie on CAD entities.
@@ -40,14 +40,12 @@ impl Candidates {
         let mut candidates = Candidates::default();
         let faces = boundary.faces.iter().enumerate().map(|(index, face)| (face.entity, index));
         candidates.sheets = gather(faces, |tag| FaceId::from_tag(tag).filter(|&id| model.face(id).is_some()));
-        let lines = mesh
-            .blocks_of(1)
-            .flat_map(|(_, block)| block.elements(Order::LINEAR).map(move |ends| (block.entity, [ends[0], ends[1]])));
-        candidates.strings = gather(lines, |tag| EdgeId::from_tag(tag).filter(|&id| model.edge(id).is_some()));
-        let points = mesh
-            .blocks_of(0)
-            .flat_map(|(_, block)| block.elements(Order::LINEAR).map(move |node| (block.entity, node[0])));
-        candidates.points = gather(points, |tag| VertexId::from_tag(tag).filter(|&id| model.vertex(id).is_some()));
+        let lines = mesh.elements_of(Cell::Line);
+        let ends = lines.iter().map(|line| (line.entity, [line.nodes[0], line.nodes[1]]));
+        candidates.strings = gather(ends, |tag| EdgeId::from_tag(tag).filter(|&id| model.edge(id).is_some()));
+        let points = mesh.elements_of(Cell::Point);
+        let nodes = points.iter().map(|point| (point.entity, point.nodes[0]));
+        candidates.points = gather(nodes, |tag| VertexId::from_tag(tag).filter(|&id| model.vertex(id).is_some()));
         candidates
     }
 }

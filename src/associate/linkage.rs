@@ -6,7 +6,7 @@ use cad::{EntityId, Model, ReferenceError};
 use linkage_schema::{Document, Entity, GeometryFile, ModelLinks, Resolution};
 
 use super::{Candidate, Candidates, NotPeriodic, Numbering, Part, UnknownZone, periodic_records, periodic_sheets};
-use crate::element::Order;
+use crate::element::Cell;
 use crate::mesh::{Boundary, EntityKey, Mesh, NodeId};
 
 /// Why a linkage file could not be used with this mesh and CAD. Every variant names the file and the place.
@@ -253,9 +253,10 @@ impl Reader<'_> {
             let label = format!("string {:?}", string.name().unwrap_or(""));
             let place = self.place(string.string.origin);
             if let Some(name) = string.reference {
-                let blocks = self.mesh.blocks_of(1).filter(|(_, block)| known(block.entity, name));
-                let edges = blocks.flat_map(|(_, block)| block.elements(Order::LINEAR).map(|ends| [ends[0], ends[1]]));
-                let items: Vec<[NodeId; 2]> = edges.collect();
+                let blocks = self.mesh.blocks().iter().filter(|block| block.cell == Cell::Line);
+                let own = blocks.filter(|block| known(block.entity, name));
+                let ends = own.flat_map(|block| block.elements(self.mesh.order()).map(|ends| [ends[0], ends[1]]));
+                let items: Vec<[NodeId; 2]> = ends.collect();
                 let entities = string.target.as_deref().map_or(&[][..], |target| &target.entities);
                 let entities = self.entities(entities, &place, &label)?;
                 if items.is_empty() {

@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 
-use crate::element::Order;
 use crate::mesh::{Boundary, Mesh, NodeId};
 
 /// A boundary face's place in space.
@@ -10,11 +9,11 @@ use crate::mesh::{Boundary, Mesh, NodeId};
 pub struct Side {
     /// Mean of its corners.
     pub middle: DVec3,
-    /// Unit normal, out of the volume; by the order of the corners where no volume element has the face. Zero for a face without area.
+    /// Unit normal, out of the volume; by the order of the corners where no cell has the face. Zero for a face without area.
     pub normal: DVec3,
     /// Longest edge.
     pub size: f64,
-    /// Volume elements that have the face: 1 on the boundary, 2 inside the volume, 0 in a mesh of faces alone.
+    /// Cells that have the face as a side: 1 on the boundary, 2 inside the volume, 0 in a mesh of faces alone.
     pub cells: usize,
 }
 
@@ -22,20 +21,15 @@ pub struct Side {
 #[must_use]
 pub fn sides(mesh: &Mesh, boundary: &Boundary) -> Vec<Side> {
     let mut sides: Vec<Side> = boundary.corners.iter().map(|corners| by_corners(mesh, corners)).collect();
-    let mut corners: Vec<NodeId> = Vec::new();
-    for (_, block) in mesh.blocks_of(3) {
-        for nodes in block.elements(Order::LINEAR) {
-            for face in block.cell.faces() {
-                corners.clear();
-                corners.extend(face.corners.iter().map(|&c| nodes[usize::from(c)]));
-                let Some(index) = boundary.face(&corners) else { continue };
-                let side = &mut sides[index];
-                let center = mesh.points_of(nodes).sum::<DVec3>() / nodes.len() as f64;
-                if side.cells == 0 && side.normal.dot(side.middle - center) < 0.0 {
-                    side.normal = -side.normal;
-                }
-                side.cells += 1;
+    for cell in mesh.cells().iter() {
+        for key in cell.sides() {
+            let Some(index) = boundary.face_of(key) else { continue };
+            let side = &mut sides[index];
+            let center = mesh.points_of(cell.corners()).sum::<DVec3>() / cell.corners().len() as f64;
+            if side.cells == 0 && side.normal.dot(side.middle - center) < 0.0 {
+                side.normal = -side.normal;
             }
+            side.cells += 1;
         }
     }
     sides

@@ -7,7 +7,7 @@ use super::contest::{Contest, Measure, SHARP};
 use super::elements::{Buffer, Elements, MeshElements};
 use super::{Bounds, Finding, Judge, Method, Settings, Shape, Verdict};
 use crate::element::{Cell, Order, basis};
-use crate::mesh::Mesh;
+use crate::mesh::{ElementId, Mesh};
 
 /// Elements judged in one go by one thread.
 const CHUNK: usize = 1024;
@@ -18,8 +18,8 @@ const BATCH: usize = 64;
 /// What is proven of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certificate {
-    /// By kind of cell, in the order of [`Cell::VOLUME`].
-    pub tallies: [Tally; 4],
+    /// By kind of cell.
+    tallies: [Tally; Cell::ALL.len()],
     /// All elements that are not proven valid, in their order.
     pub failures: Vec<Judged>,
     /// For every element, in order, a lower bound of its `J / J_c`; minus infinity where `J_c` is not positive. The least
@@ -57,8 +57,8 @@ pub struct Tally {
 /// A finding with its element and place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Judged {
-    /// Number of the element.
-    pub element: usize,
+    /// The element.
+    pub element: ElementId,
     /// Its kind.
     pub cell: Cell,
     /// Its order.
@@ -70,10 +70,21 @@ pub struct Judged {
 }
 
 impl Certificate {
-    /// Whether every element is proven valid.
+    /// Whether there are elements, and every one is proven valid.
     #[must_use]
     pub fn holds(&self) -> bool {
-        self.failures.is_empty()
+        self.failures.is_empty() && !self.minima.is_empty()
+    }
+
+    /// Counts of the elements of each kind that there is, in the order of [`Cell::ALL`].
+    pub fn tallies(&self) -> impl Iterator<Item = (Cell, &Tally)> {
+        Cell::ALL.into_iter().zip(&self.tallies).filter(|(_, tally)| tally.elements > 0)
+    }
+
+    /// Counts of the elements of one kind.
+    #[must_use]
+    pub fn tally(&self, cell: Cell) -> Tally {
+        self.tallies[cell as usize]
     }
 }
 
@@ -112,7 +123,12 @@ struct Bench {
 
 impl Bench {
     /// Reads an element and has something done with its shape.
-    fn with<R>(&mut self, elements: &impl Elements, element: usize, work: impl FnOnce(&mut Judge, &Shape) -> R) -> R {
+    fn with<R>(
+        &mut self,
+        elements: &impl Elements,
+        element: ElementId,
+        work: impl FnOnce(&mut Judge, &Shape) -> R,
+    ) -> R {
         self.buffer.points.clear();
         self.buffer.corners.clear();
         let (cell, order) = elements.read(element, &mut self.buffer);
@@ -122,7 +138,7 @@ impl Bench {
 
     fn summary(&mut self, elements: &impl Elements, range: std::ops::Range<usize>, settings: &Settings) -> Summary {
         let mut summary = Summary::default();
-        for element in range {
+        for element in range.map(|place| elements.id(place)) {
             let judged = self.with(elements, element, |judge, shape| {
                 let finding = judge.examine(shape, settings);
                 Judged { element, cell: shape.cell, order: shape.order, finding, place: DVec3::NAN }
@@ -136,7 +152,7 @@ impl Bench {
 
 /// What a run of elements amounts to.
 struct Summary {
-    tallies: [Tally; 4],
+    tallies: [Tally; Cell::ALL.len()],
     minima: Vec<f64>,
     failures: Vec<Judged>,
     relative: Contest,
@@ -158,16 +174,15 @@ impl Default for Summary {
 impl Summary {
     fn add(&mut self, judged: Judged) {
         let finding = &judged.finding;
-        for (tally, _) in self.tallies.iter_mut().zip(Cell::VOLUME).filter(|&(_, cell)| cell == judged.cell) {
-            tally.elements += 1;
-            tally.straight += usize::from(finding.method == Method::Straight);
-            tally.double += usize::from(finding.method == Method::Double);
-            tally.without_reference += usize::from(finding.relative == Bounds::UNKNOWN);
-            match finding.verdict {
-                Verdict::Valid => tally.valid += 1,
-                Verdict::Invalid { .. } => tally.invalid += 1,
-                Verdict::Undecided => tally.undecided += 1,
-            }
+        let tally = &mut self.tallies[judged.cell as usize];
+        tally.elements += 1;
+        tally.straight += usize::from(finding.method == Method::Straight);
+        tally.double += usize::from(finding.method == Method::Double);
+        tally.without_reference += usize::from(finding.relative == Bounds::UNKNOWN);
+        match finding.verdict {
+            Verdict::Valid => tally.valid += 1,
+            Verdict::Invalid { .. } => tally.invalid += 1,
+            Verdict::Undecided => tally.undecided += 1,
         }
         self.minima.push(finding.relative.lower);
         if !finding.verdict.is_valid() {
@@ -209,10 +224,10 @@ impl Summary {
         };
         self.failures.iter_mut().for_each(&mut place);
         for (element, lower) in self.relative.lower_bounds() {
-            self.minima[element] = lower;
+            self.minima[elements.place(element)] = lower;
         }
         for failure in &mut self.failures {
-            failure.finding.relative.lower = self.minima[failure.element];
+            failure.finding.relative.lower = self.minima[elements.place(failure.element)];
         }
         let (relative, mut worst_relative) = self.relative.end();
         let (scaled, mut worst_scaled) = self.scaled.end();

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::certificate::Judged;
 use super::{Bounds, Finding, Judge, Settings, Shape};
+use crate::mesh::ElementId;
 
 /// How many of the worst elements are listed.
 const LISTED: usize = 10;
@@ -130,7 +131,7 @@ impl Contest {
     }
 
     /// The elements that were sharpened, with the lower bounds of their values.
-    pub(super) fn lower_bounds(&self) -> impl Iterator<Item = (usize, f64)> {
+    pub(super) fn lower_bounds(&self) -> impl Iterator<Item = (ElementId, f64)> {
         self.entries.iter().map(|(bounds, judged)| (judged.element, bounds.lower))
     }
 

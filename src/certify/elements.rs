@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::element::{Cell, Order};
-use crate::mesh::{Block, Mesh};
+use crate::mesh::{self, ElementId, Mesh};
 
 /// An element's coordinates, in memory that is used again.
 #[derive(Clone, Debug, Default)]
@@ -14,53 +14,57 @@ pub struct Buffer {
     pub corners: Vec<DVec3>,
 }
 
-/// Numbered elements of three dimensions, of any kinds and orders.
+/// Elements that are to be judged, of any kinds and orders.
 pub trait Elements: Sync {
     /// How many there are.
     fn count(&self) -> usize;
 
+    /// The number of the element at a place among them, below their count; numbers rise with the places.
+    fn id(&self, place: usize) -> ElementId;
+
+    /// The place of an element among them.
+    fn place(&self, element: ElementId) -> usize;
+
     /// Fills the empty buffer with an element.
-    fn read(&self, element: usize, into: &mut Buffer) -> (Cell, Order);
+    fn read(&self, element: ElementId, into: &mut Buffer) -> (Cell, Order);
 }
 
-/// The volume elements of a mesh, numbered over its blocks in file order.
+/// The cells of a mesh.
 #[derive(Clone, Debug)]
 pub struct MeshElements<'a> {
-    order: Order,
+    cells: mesh::Elements<'a>,
     positions: &'a [DVec3],
     unperturbed: Option<&'a [DVec3]>,
-    blocks: Vec<(usize, &'a Block)>,
-    count: usize,
 }
 
 impl<'a> MeshElements<'a> {
-    /// The elements of a mesh with its nodes at `positions`, and the points of its linear nodes before they were moved (the first
+    /// The cells of a mesh with its nodes at `positions`, and the points of its linear nodes before they were moved (the first
     /// of an elevated mesh's); without these an element's reference is its own straight corners.
     #[must_use]
     pub fn new(mesh: &'a Mesh, positions: &'a [DVec3], unperturbed: Option<&'a [DVec3]>) -> MeshElements<'a> {
-        let mut count = 0;
-        let mut blocks = Vec::new();
-        for (_, block) in mesh.blocks_of(3) {
-            blocks.push((count, block));
-            count += block.elements(mesh.order).len();
-        }
-        MeshElements { order: mesh.order, positions, unperturbed, blocks, count }
+        MeshElements { cells: mesh.cells(), positions, unperturbed }
     }
 }
 
 impl Elements for MeshElements<'_> {
     fn count(&self) -> usize {
-        self.count
+        self.cells.len()
     }
 
-    fn read(&self, element: usize, into: &mut Buffer) -> (Cell, Order) {
-        let (first, block) = self.blocks[self.blocks.partition_point(|&(first, _)| first <= element) - 1];
-        let stride = block.stride(self.order);
-        let nodes = &block.nodes[(element - first) * stride..][..stride];
-        into.points.extend(nodes.iter().map(|n| self.positions[n.index()]));
+    fn id(&self, place: usize) -> ElementId {
+        self.cells.id(place)
+    }
+
+    fn place(&self, element: ElementId) -> usize {
+        element.index()
+    }
+
+    fn read(&self, element: ElementId, into: &mut Buffer) -> (Cell, Order) {
+        let element = self.cells.get(element);
+        into.points.extend(element.nodes.iter().map(|n| self.positions[n.index()]));
         if let Some(points) = self.unperturbed {
-            into.corners.extend(nodes[..block.cell.corner_count()].iter().map(|n| points[n.index()]));
+            into.corners.extend(element.corners().iter().map(|n| points[n.index()]));
         }
-        (block.cell, self.order)
+        (element.cell, self.cells.order())
     }
 }

@@ -7,7 +7,7 @@ use super::tests::{Random, straight, unit_corners};
 use super::{Bounds, Certificate, Method, Settings, Verdict, certify, mesh};
 use crate::element::{Cell, Order};
 use crate::mesh::elevate::elevate;
-use crate::mesh::{Block, EntityKey, Mesh, NodeId};
+use crate::mesh::{Block, ElementId, EntityKey, Mesh, NodeId, Parts};
 
 /// Curved elements of one kind after another, each with its own nodes.
 struct Loose {
@@ -19,8 +19,16 @@ impl Elements for Loose {
         self.elements.len()
     }
 
-    fn read(&self, element: usize, into: &mut Buffer) -> (Cell, Order) {
-        let (cell, order, points, corners) = &self.elements[element];
+    fn id(&self, place: usize) -> ElementId {
+        ElementId::new(place).unwrap_or_default()
+    }
+
+    fn place(&self, element: ElementId) -> usize {
+        element.index()
+    }
+
+    fn read(&self, element: ElementId, into: &mut Buffer) -> (Cell, Order) {
+        let (cell, order, points, corners) = &self.elements[element.index()];
         into.points.extend_from_slice(points);
         into.corners.extend_from_slice(corners);
         (*cell, *order)
@@ -50,7 +58,7 @@ fn the_certificate_is_the_same_for_any_number_of_threads() {
         Some(pool.install(|| certify(&loose, &Settings::default())))
     };
     let one = run(1);
-    assert!(one.as_ref().is_some_and(|c| c.tallies.iter().map(|t| t.elements).sum::<usize>() == 5000));
+    assert!(one.as_ref().is_some_and(|c| c.tallies().map(|(_, t)| t.elements).sum::<usize>() == 5000));
     for threads in [2, 7] {
         assert!(format!("{:?}", run(threads)) == format!("{one:?}"), "{threads} threads");
     }
@@ -97,28 +105,21 @@ fn a_mesh_is_read_by_its_blocks() -> Result<(), Box<dyn std::error::Error>> {
         nodes.extend(a.into_iter().chain(b).map(id).collect::<Result<Vec<_>, _>>()?);
     }
     let points: Vec<DVec3> = (0..24).map(|n| DVec3::new((n / 4) as f64, (n % 2) as f64, (n / 2 % 2) as f64)).collect();
-    let block =
-        Block { cell: Cell::Hex, entity: EntityKey::new(3, 1), physical_tags: vec![], tags: (1..=5).collect(), nodes };
-    let linear = Mesh {
-        node_tags: (1..=24).collect(),
-        node_entities: vec![None; 24],
-        points: points.clone(),
-        blocks: vec![block],
-        ..Mesh::default()
-    };
+    let block = Block { tags: (1..=5).collect(), nodes, ..Block::new(Cell::Hex, EntityKey::new(3, 1)) };
+    let linear = Mesh::new(Parts { points: points.clone(), blocks: vec![block], ..Parts::default() })?;
     let mut curved = elevate(&linear, Order::new(2)?)?.mesh;
-    let certificate = mesh(&curved, &curved.points, Some(&points), &Settings::default());
-    assert!(certificate.holds() && certificate.tallies[3].straight == 5);
+    let certificate = mesh(&curved, curved.points(), Some(&points), &Settings::default());
+    assert!(certificate.holds() && certificate.tally(Cell::Hex).straight == 5);
     assert!((certificate.relative.lower - 1.0).abs() < 1e-9);
-    let inner = curved.blocks[0].nodes[2 * 27 + 26];
-    curved.points[inner.index()] += DVec3::new(0.6, 0.0, 0.0);
-    let certificate = mesh(&curved, &curved.points, Some(&points), &Settings::default());
+    let inner = curved.cells().nodes(ElementId::new(2)?)[26];
+    curved.points_mut()[inner.index()] += DVec3::new(0.6, 0.0, 0.0);
+    let certificate = mesh(&curved, curved.points(), Some(&points), &Settings::default());
     assert_eq!(certificate.failures.len(), 1);
     let failure = certificate.failures[0];
-    assert_eq!((failure.element, certificate.tallies[3].invalid), (2, 1));
+    assert_eq!((failure.element, certificate.tally(Cell::Hex).invalid), (ElementId::new(2)?, 1));
     assert!((2.0..=3.0).contains(&failure.place.x), "{failure:?}");
     assert!(certificate.relative.lower < 0.0 && certificate.relative != Bounds::UNKNOWN);
-    assert_eq!(mesh(&curved, &curved.points, None, &Settings::default()).failures.len(), 1);
+    assert_eq!(mesh(&curved, curved.points(), None, &Settings::default()).failures.len(), 1);
     Ok(())
 }
 
@@ -128,18 +129,18 @@ fn a_mesh_is_read_by_its_blocks() -> Result<(), Box<dyn std::error::Error>> {
 fn speed() {
     let settings = Settings::default();
     for order in Order::all().skip(1) {
-        for (kind, cell) in Cell::VOLUME.into_iter().enumerate() {
+        for cell in Cell::VOLUME {
             for amount in [0.0, 0.01, 0.03] {
                 let mut loose = loose(9, 4 * 6000, Some(order), amount);
                 loose.elements.retain(|element| element.0 == cell);
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
                 let start = std::time::Instant::now();
                 let Ok(certificate) = pool.map(|pool| pool.install(|| certify(&loose, &settings))) else { return };
-                let tally = certificate.tallies[kind];
+                let tally = certificate.tally(cell);
                 let rate = tally.elements as f64 / start.elapsed().as_secs_f64();
                 println!("{cell:8} {order} noise {amount}: {rate:9.0} a second, {tally:?}");
                 assert_eq!(tally.straight > 2 * tally.elements / 3, amount == 0.0);
-                assert!(certificate.tallies.iter().all(|t| t.double == 0 || Method::Double != Method::Simple));
+                assert!(certificate.tallies().all(|(_, t)| t.double == 0 || Method::Double != Method::Simple));
             }
         }
     }

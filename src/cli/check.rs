@@ -50,7 +50,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
             Some(matched)
         }
     };
-    let certificate = certify::mesh(&mesh, &mesh.points, unperturbed.as_deref(), &Settings::default());
+    let certificate = certify::mesh(&mesh, mesh.points(), unperturbed.as_deref(), &Settings::default());
     let report = CheckReport::new(&options.mesh, &mesh, &certificate);
     if let Some(path) = &options.report {
         write_json(path, &report)?;
@@ -61,22 +61,18 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
 
 /// The linear mesh's points by the nodes of the curved mesh, which have the same numbers.
 fn corners(curved: &Mesh, linear: &Mesh) -> Result<Vec<DVec3>, String> {
-    for dimension in [2, 3] {
-        let [own, theirs] = [curved, linear].map(|mesh| mesh.element_count(dimension));
+    let counts = |mesh: &Mesh| [("cells", mesh.cells().len()), ("elements on the boundary", mesh.sides().len())];
+    for ((what, own), (_, theirs)) in counts(curved).into_iter().zip(counts(linear)) {
         if own != theirs {
-            return Err(format!("it has {theirs} elements of dimension {dimension}, the curved mesh has {own}"));
+            return Err(format!("it has {theirs} {what}, the curved mesh has {own}"));
         }
     }
-    let by_tag: FxHashMap<u64, usize> = linear.node_tags.iter().enumerate().map(|(n, &tag)| (tag, n)).collect();
-    let mut points = curved.points.clone();
-    for (_, block) in curved.blocks_of(3) {
-        for nodes in block.elements(curved.order) {
-            for corner in &nodes[..block.cell.corner_count()] {
-                let tag = curved.node_tags[corner.index()];
-                let known = by_tag.get(&tag).ok_or_else(|| format!("it has no node {tag}"))?;
-                points[corner.index()] = linear.points[*known];
-            }
-        }
+    let by_tag: FxHashMap<u64, usize> = linear.node_tags().iter().enumerate().map(|(n, &tag)| (tag, n)).collect();
+    let mut points = curved.points().to_vec();
+    for corner in curved.cells().iter().flat_map(|cell| cell.corners()) {
+        let tag = curved.node_tags()[corner.index()];
+        let known = by_tag.get(&tag).ok_or_else(|| format!("it has no node {tag}"))?;
+        points[corner.index()] = linear.points()[*known];
     }
     Ok(points)
 }

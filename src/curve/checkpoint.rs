@@ -76,7 +76,7 @@ impl Work {
         for x in straight.iter().copied().chain(boundary).flat_map(|x| x.to_array()) {
             hasher.write_u64(x.to_bits());
         }
-        Work { fingerprint: hasher.finish(), elements: level.mesh().element_count(3), nodes: straight.len() }
+        Work { fingerprint: hasher.finish(), elements: level.mesh().cells().len(), nodes: straight.len() }
     }
 }
 

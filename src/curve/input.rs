@@ -14,18 +14,18 @@ const LISTED: usize = 10;
 
 /// Refuses a mesh that cannot be curved.
 pub(super) fn check_mesh(linear: &Mesh) -> Result<(), Error> {
-    if linear.order != Order::LINEAR {
-        return Err(Error::NotLinear { order: linear.order });
+    if linear.order() != Order::LINEAR {
+        return Err(Error::NotLinear { order: linear.order() });
     }
-    if linear.element_count(3) == 0 {
+    if !linear.is_volume() {
         return Err(Error::NoVolume);
     }
-    let certificate = certify::mesh(linear, &linear.points, None, &certify::Settings::default());
+    let certificate = certify::mesh(linear, linear.points(), None, &certify::Settings::default());
     if certificate.holds() {
         return Ok(());
     }
-    let tags: Vec<u64> = linear.blocks_of(3).flat_map(|(_, block)| block.tags.iter().copied()).collect();
-    let some = certificate.failures.iter().take(LISTED).map(|f| format!("{} {}", f.cell, tags[f.element]));
+    let cells = linear.cells();
+    let some = certificate.failures.iter().take(LISTED).map(|f| format!("{} {}", f.cell, cells.get(f.element).tag));
     let count = certificate.failures.len();
     let more = if count > LISTED { ", ..." } else { "" };
     Err(Error::Inverted { count, listed: some.collect::<Vec<_>>().join(", ") + more })

@@ -7,8 +7,8 @@ use rustc_hash::FxHashSet;
 use super::level::{Case, Level};
 use crate::associate::{Classification, normal_at};
 use crate::certify::{self, Certificate, WallFace, Walls};
-use crate::element::{Cell, Order, Samples, basis};
-use crate::mesh::NodeId;
+use crate::element::{Order, Samples, basis};
+use crate::mesh::{Element, ElementId, NodeId};
 
 /// Divisions an edge, times the order, at which a face that leans far is compared with the CAD's normals.
 const SURVEY: usize = 4;
@@ -41,8 +41,8 @@ impl Proof {
 
     /// Numbers of the elements that are not proven valid or have a face that is not proven free of folds, rising.
     #[must_use]
-    pub fn failing(&self, level: &Level) -> Vec<usize> {
-        let mut failing: Vec<usize> = self.certificate.failures.iter().map(|judged| judged.element).collect();
+    pub fn failing(&self, level: &Level) -> Vec<ElementId> {
+        let mut failing: Vec<ElementId> = self.certificate.failures.iter().map(|judged| judged.element).collect();
         failing.extend(behind(level, &self.walls));
         failing.sort_unstable();
         failing.dedup();
@@ -100,21 +100,17 @@ fn middle(vectors: &[DVec3]) -> Option<DVec3> {
 }
 
 /// Numbers of the elements behind faces that are not proven free of folds, rising.
-pub(crate) fn behind(level: &Level, walls: &Walls) -> Vec<usize> {
+pub(crate) fn behind(level: &Level, walls: &Walls) -> Vec<ElementId> {
     if walls.hold() {
         return Vec::new();
     }
-    let (boundary, mesh) = (level.case.boundary, level.mesh());
+    let boundary = level.case.boundary;
     let faces: FxHashSet<usize> = walls.failures.iter().map(|own| own.face).collect();
-    let elements = mesh.blocks_of(3).flat_map(|(_, block)| block.elements(mesh.order).map(|nodes| (block.cell, nodes)));
     let corners = faces.iter().flat_map(|&face| boundary.corners[face].iter().copied());
     let corners: FxHashSet<NodeId> = corners.collect();
-    let has_face = |cell: Cell, nodes: &[NodeId]| {
-        nodes.iter().any(|n| corners.contains(n))
-            && cell.faces().iter().any(|face| {
-                let corners: Vec<NodeId> = face.corners.iter().map(|&c| nodes[usize::from(c)]).collect();
-                boundary.face(&corners).is_some_and(|face| faces.contains(&face))
-            })
+    let has_face = |own: &Element| {
+        own.corners().iter().any(|n| corners.contains(n))
+            && own.sides().any(|side| boundary.face_of(side).is_some_and(|face| faces.contains(&face)))
     };
-    elements.enumerate().filter(|(_, (cell, nodes))| has_face(*cell, nodes)).map(|(e, _)| e).collect()
+    level.mesh().cells().iter().filter(has_face).map(|own| own.id).collect()
 }

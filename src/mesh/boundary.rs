@@ -82,7 +82,13 @@ impl Boundary {
     /// The face with these corners, in whatever order.
     #[must_use]
     pub fn face(&self, corners: &[NodeId]) -> Option<usize> {
-        self.by_corners.get(&FaceKey::new(corners)).copied()
+        self.face_of(FaceKey::new(corners))
+    }
+
+    /// The face of a key.
+    #[must_use]
+    pub fn face_of(&self, key: FaceKey) -> Option<usize> {
+        self.by_corners.get(&key).copied()
     }
 
     /// The edge between two nodes.

@@ -27,6 +27,12 @@ impl<'a> Element<'a> {
         &self.nodes[..self.cell.corner_count()]
     }
 
+    /// The ends of its edges, in the order of [`Cell::edges`].
+    pub fn edges(&self) -> impl ExactSizeIterator<Item = [NodeId; 2]> + use<'a> {
+        let nodes = self.nodes;
+        self.cell.edges().iter().map(move |edge| edge.map(|q| nodes[usize::from(q)]))
+    }
+
     /// Its sides, in the order of [`Cell::sides`]: the same key in every element that has the side.
     pub fn sides(&self) -> impl Iterator<Item = FaceKey> + use<'a> {
         let nodes = self.nodes;
@@ -106,6 +112,12 @@ impl<'a> Elements<'a> {
     fn place(&self, id: ElementId) -> (&'a Block, usize) {
         let own = self.firsts.partition_point(|&first| first <= id.index()) - 1;
         (self.blocks[own], id.index() - self.firsts[own])
+    }
+
+    /// The number of the element at a place in their order, below their count.
+    #[must_use]
+    pub fn id(&self, place: usize) -> ElementId {
+        ElementId::numbered(place)
     }
 
     /// All numbers, rising.

@@ -9,8 +9,8 @@ use std::ops::Range;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::{Block, EntityKey, Mesh, NodeId, TooMany};
-use crate::element::{Cell, InteriorSlots, Order, basis, canonical, interior_start};
+use super::{Block, EntityKey, FaceKey, Mesh, NodeId, TooMany};
+use crate::element::{Cell, InteriorSlots, Order, basis, interior_start};
 
 /// Elements whose sides are looked up at a time: what they take while they wait does not grow with the mesh.
 const BATCH: usize = 1 << 12;
@@ -161,8 +161,8 @@ pub fn elevate(linear: &Mesh, order: Order) -> Result<Elevated, TooMany> {
     let mut builder = Builder::new(linear, order);
     let mut blocks: Vec<Option<Block>> = vec![None; linear.blocks.len()];
     let mut boundary_nodes = linear.points.len();
-    for dimension in 0..=3 {
-        if dimension == 3 {
+    for dimension in 0..=linear.dimension() {
+        if dimension == linear.dimension() {
             boundary_nodes = builder.mesh.node_tags.len();
         }
         for (place, block) in linear.blocks_of(dimension) {
@@ -196,9 +196,9 @@ struct Side {
 /// A side of an element.
 #[derive(Clone, Copy, Default)]
 struct Seat {
-    /// Its corners in canonical order.
-    key: [NodeId; 4],
-    /// That order, as positions in the corners as the element sees them.
+    /// Its corners.
+    key: FaceKey,
+    /// Their order in the key, as positions in the corners as the element sees them.
     seen: [u8; 4],
     /// The first of its new nodes; [`NodeId::NONE`] until it is known.
     first: NodeId,
@@ -268,9 +268,8 @@ impl Builder {
             *slot = element[usize::from(q)];
         }
         let count = side.corners.len();
-        let seen = canonical(&corners[..count]);
-        let key = seen.map(|q| corners[usize::from(q)]);
-        let first = self.chains[side.cell as usize].find(&self.carriers[side.cell as usize], &key[..count], 0);
+        let (key, seen) = FaceKey::seen(&corners[..count]);
+        let first = self.chains[side.cell as usize].find(&self.carriers[side.cell as usize], key.corners(), 0);
         Seat { key, seen, first: first.unwrap_or(NodeId::NONE) }
     }
 
@@ -281,7 +280,7 @@ impl Builder {
         for (n, corners) in elements.chunks(cell.corner_count()).enumerate() {
             let seats = &mut seats[n * sides.len()..][..sides.len()];
             for (seat, side) in seats.iter_mut().zip(sides).filter(|(seat, _)| seat.first == NodeId::NONE) {
-                let (kind, key) = (side.cell as usize, &seat.key[..side.corners.len()]);
+                let (kind, key) = (side.cell as usize, seat.key.corners());
                 let known = self.chains[kind].find(&self.carriers[kind], key, since[kind]);
                 seat.first = match known {
                     Some(first) => first,

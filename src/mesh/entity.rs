@@ -19,6 +19,12 @@ impl EntityKey {
     pub fn new(dimension: u8, tag: i32) -> EntityKey {
         EntityKey { dimension, tag }
     }
+
+    /// Whether it is a surface.
+    #[must_use]
+    pub fn is_surface(self) -> bool {
+        self.dimension == 2
+    }
 }
 
 impl fmt::Display for EntityKey {
@@ -50,6 +56,20 @@ pub struct PhysicalName {
     pub tag: i32,
     /// Its name.
     pub name: String,
+}
+
+impl PhysicalName {
+    /// Whether the group is one of surfaces.
+    #[must_use]
+    pub fn is_of_surfaces(&self) -> bool {
+        self.dimension == 2
+    }
+
+    /// Whether the group is one of curves.
+    #[must_use]
+    pub fn is_of_curves(&self) -> bool {
+        self.dimension == 1
+    }
 }
 
 /// Two entities whose nodes correspond (MSH `$Periodic`).

@@ -6,7 +6,7 @@ use crate::element::canonical;
 /// A face or edge by the nodes at its corners: the same whichever corner and direction an element begins with.
 ///
 /// The smallest corner comes first, then the way to its smaller neighbour.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FaceKey([NodeId; 4]);
 
 impl FaceKey {

@@ -26,7 +26,7 @@ pub use incidence::Incidence;
 pub use parts::{Inconsistent, Parts};
 pub use zone::Zone;
 
-use crate::element::Order;
+use crate::element::{Cell, Order};
 
 /// A mesh of one polynomial order.
 ///
@@ -187,6 +187,12 @@ impl Mesh {
         with_elements.map(|block| block.cell.dimension()).max().unwrap_or(0)
     }
 
+    /// Whether the cells fill a volume.
+    #[must_use]
+    pub fn is_volume(&self) -> bool {
+        self.dimension() == 3
+    }
+
     /// The elements of the mesh's own dimension: volumes, or faces where there are none.
     #[must_use]
     pub fn cells(&self) -> Elements<'_> {
@@ -197,6 +203,12 @@ impl Mesh {
     #[must_use]
     pub fn sides(&self) -> Elements<'_> {
         Elements::new(self.order, self.side_blocks())
+    }
+
+    /// The elements of one kind, numbered among themselves.
+    #[must_use]
+    pub fn elements_of(&self, cell: Cell) -> Elements<'_> {
+        Elements::new(self.order, self.blocks.iter().filter(move |block| block.cell == cell))
     }
 
     /// Blocks of cells.

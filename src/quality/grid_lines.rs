@@ -10,7 +10,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::element::{Cell, basis, edge_nodes};
-use crate::mesh::{Block, Mesh, NodeId};
+use crate::mesh::{ElementId, Elements, Incidence, Mesh, NodeId};
 
 /// Longest edge of a grid line, as a fraction of the mean boundary edge at its foot.
 const FLAT: f64 = 0.5;
@@ -37,38 +37,36 @@ pub struct GridLineAngles {
 struct Ray {
     from: NodeId,
     to: NodeId,
-    /// An element that has the edge: first node in its block's connectivity, block, and edge of the cell.
-    start: usize,
-    block: u32,
+    /// An element that has the edge, and which of its edges it is.
+    element: ElementId,
     edge: u8,
 }
 
 /// The grid lines of a mesh: each the rays that follow each other.
 pub struct GridLines<'a> {
-    mesh: &'a Mesh,
+    cells: Elements<'a>,
     lines: Vec<Vec<Ray>>,
 }
 
 impl<'a> GridLines<'a> {
     /// Finds the grid lines of `mesh`, an elevated mesh, in its unperturbed state: `straight` are the coordinates of its nodes then.
-    /// Its elements of two dimensions are the boundary.
+    /// Its sides are the boundary.
     #[must_use]
     pub fn new(mesh: &'a Mesh, straight: &[DVec3]) -> GridLines<'a> {
         let rays = Rays::new(mesh);
         let feet = feet(mesh, straight);
         let lines = feet.par_iter().map(|foot| line(&rays, foot, straight));
-        GridLines { mesh, lines: lines.filter(|line| line.len() > 1).collect() }
+        GridLines { lines: lines.filter(|line| line.len() > 1).collect(), cells: rays.cells }
     }
 
     /// Angles between curved edges, their nodes at `x`.
     #[must_use]
     pub fn curved(&self, x: &[DVec3]) -> GridLineAngles {
-        let order = self.mesh.order;
+        let order = self.cells.order();
         let slopes = [0.0, 1.0].map(|s| basis::gradients(Cell::Line, order, [s, 0.0, 0.0]));
         let tangent = |ray: &Ray, at_end: bool| {
-            let block = &self.mesh.blocks[ray.block as usize];
-            let edge = &edge_nodes(block.cell, order)[usize::from(ray.edge)];
-            let nodes = &block.nodes[ray.start..][..block.stride(order)];
+            let own = self.cells.get(ray.element);
+            let (nodes, edge) = (own.nodes, &edge_nodes(own.cell, order)[usize::from(ray.edge)]);
             let forth = nodes[edge[0]] == ray.from;
             let table = &slopes[usize::from(at_end == forth)];
             let along: DVec3 = edge.iter().zip(table).map(|(&n, slope)| x[nodes[n].index()] * slope[0]).sum();
@@ -103,60 +101,33 @@ fn angle(a: DVec3, b: DVec3) -> f64 {
     a.cross(b).length().atan2(a.dot(b)).to_degrees()
 }
 
-/// The volume elements around every corner, from which rays are read.
+/// The cells around every corner, from which rays are read.
 struct Rays<'a> {
-    mesh: &'a Mesh,
-    /// Blocks of volume elements: number of the first element, and index in the mesh.
-    blocks: Vec<(usize, usize)>,
-    /// Elements around each corner, by node: ranges of `around`.
-    starts: Vec<u32>,
-    around: Vec<u32>,
+    cells: Elements<'a>,
+    around: Incidence<ElementId>,
 }
 
 impl<'a> Rays<'a> {
     fn new(mesh: &'a Mesh) -> Rays<'a> {
-        let mut rays = Rays { mesh, blocks: Vec::new(), starts: vec![0], around: Vec::new() };
-        let mut count = 0;
-        for (place, block) in mesh.blocks_of(3) {
-            rays.blocks.push((count, place));
-            count += block.tags.len();
-        }
-        let corners = |block: &'a Block| block.elements(mesh.order).map(|nodes| &nodes[..block.cell.corner_count()]);
-        let each = || mesh.blocks_of(3).flat_map(|(_, block)| corners(block)).enumerate();
-        let last = each().flat_map(|(_, corners)| corners).max().map_or(0, |n| n.index() + 1);
-        rays.starts.resize(last + 1, 0);
-        each().flat_map(|(_, corners)| corners).for_each(|n| rays.starts[n.index() + 1] += 1);
-        for n in 0..last {
-            rays.starts[n + 1] += rays.starts[n];
-        }
-        let mut next = rays.starts.clone();
-        rays.around = vec![0; rays.starts[last] as usize];
-        for (element, corners) in each() {
-            for n in corners {
-                rays.around[next[n.index()] as usize] = element as u32;
-                next[n.index()] += 1;
-            }
-        }
-        rays
+        let cells = mesh.cells();
+        let last = cells.iter().flat_map(|own| own.corners()).max().map_or(0, |n| n.index() + 1);
+        let pairs = cells.iter().flat_map(|own| own.corners().iter().map(move |n| (n.index(), own.id)));
+        let around = Incidence::new(last, pairs);
+        Rays { cells, around }
     }
 
     /// The rays from a node, each once, by their other ends.
     fn from(&self, node: NodeId) -> Vec<Ray> {
-        let Some(&[first, end]) = self.starts.get(node.index()..node.index() + 2) else { return Vec::new() };
         let mut rays = Vec::new();
-        for &element in &self.around[first as usize..end as usize] {
-            let (before, place) = self.blocks[self.blocks.partition_point(|b| b.0 <= element as usize) - 1];
-            let block = &self.mesh.blocks[place];
-            let stride = block.stride(self.mesh.order);
-            let start = (element as usize - before) * stride;
-            for (edge, &ends) in block.cell.edges().iter().enumerate() {
-                let [a, b] = ends.map(|n| block.nodes[start + usize::from(n)]);
+        for &element in self.around.at(node.index()) {
+            let own = self.cells.get(element);
+            for (edge, [a, b]) in own.edges().enumerate() {
                 for (from, to) in [(a, b), (b, a)].into_iter().filter(|(from, _)| *from == node) {
-                    rays.push(Ray { from, to, start, block: place as u32, edge: edge as u8 });
+                    rays.push(Ray { from, to, element, edge: edge as u8 });
                 }
             }
         }
-        rays.sort_unstable_by_key(|ray| (ray.to, ray.block, ray.start));
+        rays.sort_unstable_by_key(|ray| (ray.to, ray.element));
         rays.dedup_by_key(|ray| ray.to);
         rays
     }
@@ -175,14 +146,12 @@ struct Foot {
 
 fn feet(mesh: &Mesh, x: &[DVec3]) -> Vec<Foot> {
     let mut sides = Vec::new();
-    for (_, block) in mesh.blocks_of(2) {
-        for nodes in block.elements(mesh.order) {
-            let corners = &nodes[..block.cell.corner_count()];
-            for (n, &node) in corners.iter().enumerate() {
-                let (next, last) = (corners[(n + 1) % corners.len()], corners[(n + corners.len() - 1) % corners.len()]);
-                let [at, u, v] = [node, next, last].map(|n| x[n.index()]);
-                sides.push((node, next, last, (u - at).cross(v - at).normalize_or_zero()));
-            }
+    for side in mesh.sides().iter() {
+        let corners = side.corners();
+        for (n, &node) in corners.iter().enumerate() {
+            let (next, last) = (corners[(n + 1) % corners.len()], corners[(n + corners.len() - 1) % corners.len()]);
+            let [at, u, v] = [node, next, last].map(|n| x[n.index()]);
+            sides.push((node, next, last, (u - at).cross(v - at).normalize_or_zero()));
         }
     }
     sides.sort_by_key(|side| (side.0, side.1, side.2));
@@ -219,10 +188,11 @@ fn line(rays: &Rays, foot: &Foot, x: &[DVec3]) -> Vec<Ray> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
     use crate::element::{Order, lattice};
-    use crate::mesh::EntityKey;
+    use crate::mesh::{Block, EntityKey, Parts};
 
     /// Three hexes of height 0.1 on a unit square, the first's bottom on the boundary:
     ///
@@ -247,23 +217,18 @@ mod tests {
             })
         });
         let wall = lattice(Cell::Quad, order).iter().map(|at| node(at.map(usize::from)));
-        let block = |cell, tags, nodes| Block {
-            cell,
-            entity: EntityKey::new(cell.dimension() as u8, 1),
-            physical_tags: Vec::new(),
-            tags,
-            nodes,
-        };
+        let entity = |cell: Cell| EntityKey::new(cell.dimension() as u8, 1);
+        let block = |cell, tags, nodes| Block { tags, nodes, ..Block::new(cell, entity(cell)) };
         let blocks = vec![block(Cell::Hex, vec![1, 2, 3], hexes.collect()), block(Cell::Quad, vec![4], wall.collect())];
-        Mesh { order, points, blocks, ..Mesh::default() }
+        Mesh::new(Parts { order, points, blocks, ..Parts::default() }).unwrap()
     }
 
     #[test]
     fn straight_grid_lines_have_no_angles() {
         for order in Order::all() {
             let mesh = stack(order);
-            let lines = GridLines::new(&mesh, &mesh.points);
-            for angles in [lines.curved(&mesh.points), lines.linear(&mesh.points)] {
+            let lines = GridLines::new(&mesh, mesh.points());
+            for angles in [lines.curved(mesh.points()), lines.linear(mesh.points())] {
                 assert_eq!((angles.lines, angles.angles), (4, 8), "{order}");
                 assert!(angles.max < 1e-9, "{order}: {angles:?}");
             }
@@ -281,8 +246,8 @@ mod tests {
                 let s = (x.z / 0.1 + 1e-9).fract() - 1e-9;
                 *x + DVec3::X * (4.0 * bow * s * (1.0 - s))
             };
-            let x: Vec<DVec3> = mesh.points.iter().map(bent).collect();
-            let lines = GridLines::new(&mesh, &mesh.points);
+            let x: Vec<DVec3> = mesh.points().iter().map(bent).collect();
+            let lines = GridLines::new(&mesh, mesh.points());
             let expected = 2.0 * (4.0 * bow / 0.1f64).atan().to_degrees();
             let angles = lines.curved(&x);
             assert!((angles.max - expected).abs() < 1e-5 && (angles.p99 - expected).abs() < 1e-5, "{angles:?}");
@@ -293,7 +258,7 @@ mod tests {
     #[test]
     fn there_are_no_grid_lines_without_layers() {
         let mut mesh = stack(Order::LINEAR);
-        mesh.points.iter_mut().for_each(|x| x.z *= 10.0);
-        assert_eq!(GridLines::new(&mesh, &mesh.points).linear(&mesh.points), GridLineAngles::default());
+        mesh.points_mut().iter_mut().for_each(|x| x.z *= 10.0);
+        assert_eq!(GridLines::new(&mesh, mesh.points()).linear(mesh.points()), GridLineAngles::default());
     }
 }

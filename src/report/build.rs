@@ -71,7 +71,7 @@ fn walls(curved: &Curved) -> WallReport {
     let failure = |finding: &FaceFinding| {
         let face = &curved.boundary.faces[finding.face];
         WallFailure {
-            element: curved.mesh.blocks[face.block].tags[face.element],
+            element: curved.boundary.tag(finding.face, &curved.mesh),
             entity: face.entity.to_string(),
             verdict: match finding.verdict {
                 Verdict::Undecided => WallVerdict::Undecided,
@@ -91,14 +91,11 @@ fn grid_line_angles(curved: &Curved) -> GridLinesReport {
 }
 
 fn cells(curved: &Curved) -> Vec<CellReport> {
-    let mut kinds: Vec<Cell> = Vec::new();
-    for (_, block) in curved.mesh.blocks_of(3) {
-        kinds.extend(std::iter::repeat_n(block.cell, block.tags.len()));
-    }
+    let kinds: Vec<Cell> = curved.mesh.cells().iter().map(|own| own.cell).collect();
     let straight = straight_elements(&curved.mesh, &curved.straight);
-    let tallies = curved.certificate.tallies.iter().zip(Cell::VOLUME).filter(|(tally, _)| tally.elements > 0);
+    let tallies = curved.certificate.tallies();
     tallies
-        .map(|(tally, cell)| {
+        .map(|(cell, tally)| {
             let own = || (0..kinds.len()).filter(|&e| kinds[e] == cell);
             let costs = || own().map(|e| &curved.smoothed.costs[e]);
             CellReport {
@@ -164,7 +161,7 @@ fn off_cad(curved: &Curved, off: &OffCadFace) -> OffCadReport {
     let corners = &curved.boundary.corners[off.face];
     let middle: DVec3 = corners.iter().map(|n| curved.mesh.points[n.index()]).sum::<DVec3>() / corners.len() as f64;
     OffCadReport {
-        element: curved.mesh.blocks[face.block].tags[face.element],
+        element: curved.boundary.tag(off.face, &curved.mesh),
         entity: face.entity.to_string(),
         order: off.order.get(),
         fraction: off.fraction,

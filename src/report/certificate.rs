@@ -51,8 +51,8 @@ impl CertificateReport {
     /// A certificate with the file's element numbers.
     #[must_use]
     pub fn new(mesh: &Mesh, certificate: &Certificate) -> CertificateReport {
-        let tags: Vec<u64> = mesh.blocks_of(3).flat_map(|(_, block)| block.tags.iter().copied()).collect();
-        let element = |judged: &Judged| ElementReport::new(tags[judged.element], judged);
+        let cells = mesh.cells();
+        let element = |judged: &Judged| ElementReport::new(cells.get(judged.element).tag, judged);
         let weakest = certificate.worst_relative.iter().filter(|j| j.finding.verdict.is_valid()).take(LISTED);
         CertificateReport {
             j_over_jc: certificate.relative.into(),

@@ -46,8 +46,7 @@ impl CheckReport {
     /// The report of a mesh file's certificate.
     #[must_use]
     pub fn new(path: &Path, mesh: &Mesh, certificate: &Certificate) -> CheckReport {
-        let tallies = certificate.tallies.iter().zip(Cell::VOLUME).filter(|(tally, _)| tally.elements > 0);
-        let counts = |(tally, cell): (&Tally, Cell)| CellCounts {
+        let counts = |(cell, tally): (Cell, &Tally)| CellCounts {
             cell: cell.name(),
             count: tally.elements,
             valid: tally.valid,
@@ -60,7 +59,7 @@ impl CheckReport {
             mesh: path.display().to_string(),
             order: mesh.order.into(),
             certified: certificate.holds(),
-            cells: tallies.map(counts).collect(),
+            cells: certificate.tallies().map(counts).collect(),
             certificate: CertificateReport::new(mesh, certificate),
         }
     }

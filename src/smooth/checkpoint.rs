@@ -18,7 +18,7 @@ pub struct Checkpoint<'a> {
     /// Smallest costs before the first sweep.
     pub(super) start: Summary,
     pub(super) sweeps: usize,
-    /// Each volume element's survey.
+    /// Each cell's survey.
     pub(super) density: Cow<'a, [u8]>,
     /// Positions of all nodes.
     pub(super) x: Cow<'a, [DVec3]>,
@@ -59,7 +59,7 @@ impl Checkpoint<'_> {
         Ok(())
     }
 
-    /// Reads a state of a mesh with so many volume elements and nodes.
+    /// Reads a state of a mesh with so many cells and nodes.
     ///
     /// # Errors
     /// Those of `input`, also where it ends early; [`io::ErrorKind::InvalidData`] for a node that there is not.

@@ -10,13 +10,14 @@ use rayon::prelude::*;
 use super::problem::Kernels;
 use super::{ElementCost, Problem};
 use crate::certify::{self, Judge, Shape, Verdict};
+use crate::mesh::ElementId;
 
 /// Costs of the given elements by a survey, confirmed where `C_JAC` is below `level`.
 pub(super) fn confirmed_costs(
     problem: &Problem,
     survey: &Kernels,
     level: f64,
-    elements: impl IndexedParallelIterator<Item = usize> + Clone,
+    elements: impl IndexedParallelIterator<Item = ElementId> + Clone,
     x: &[DVec3],
 ) -> Vec<ElementCost> {
     let mut costs = problem.costs(survey, x, elements.clone());
@@ -37,7 +38,7 @@ struct Bench {
 
 impl Bench {
     /// What `C_JAC` cannot exceed: 0 at most where the element is not proven valid.
-    fn bound(&mut self, problem: &Problem, element: usize, x: &[DVec3]) -> f64 {
+    fn bound(&mut self, problem: &Problem, element: ElementId, x: &[DVec3]) -> f64 {
         let (cell, nodes) = (problem.cell(element), problem.nodes(element));
         self.points.clear();
         self.points.extend(nodes.iter().map(|n| x[n.index()]));

@@ -4,7 +4,7 @@ use glam::{DAffine3, DVec3};
 
 use super::{Image, Problem};
 use crate::element::Cell;
-use crate::mesh::NodeId;
+use crate::mesh::{ElementId, Incidence, NodeId};
 
 /// Elements of one cell and survey density in a patch; their nodes' slots follow each other.
 pub(super) struct Run {
@@ -22,8 +22,8 @@ pub(super) struct Run {
 
 /// Active elements with compact node numbers.
 pub(super) struct Patch {
-    /// Ids of the elements in the problem, by run.
-    pub(super) elements: Vec<usize>,
+    /// The elements, by run.
+    pub(super) elements: Vec<ElementId>,
     pub(super) runs: Vec<Run>,
     /// Patch node of every element's every node.
     pub(super) slots: Vec<u32>,
@@ -33,24 +33,22 @@ pub(super) struct Patch {
     pub(super) movable: Vec<bool>,
     /// Nodes that are images of others, those others, and the maps.
     pub(super) periodic: Vec<(usize, usize, DAffine3)>,
-    /// For each node the range in `incident`.
-    starts: Vec<u32>,
-    /// Slots by node, rising.
-    incident: Vec<u32>,
+    /// Slots of each node's appearances in elements, rising.
+    incident: Incidence<u32>,
     /// Straight positions of the nodes.
     pub(super) targets: Vec<DVec3>,
 }
 
 impl Patch {
-    /// The patch of the elements that `active` names (rising ids), with every element's survey density.
-    pub(super) fn new(problem: &Problem, active: &[usize], density: &[u8], images: &[Image]) -> Patch {
+    /// The patch of the elements that `active` names (rising), with every element's survey density.
+    pub(super) fn new(problem: &Problem, active: &[ElementId], density: &[u8], images: &[Image]) -> Patch {
         let mut runs: Vec<Run> = Vec::new();
-        let mut elements: Vec<usize> = active.to_vec();
-        elements.sort_by_key(|&e| (problem.cell(e), density[e], e));
+        let mut elements: Vec<ElementId> = active.to_vec();
+        elements.sort_by_key(|&e| (problem.cell(e), density[e.index()], e));
         let mut local = vec![u32::MAX; problem.node_count()];
-        let (mut nodes, mut slots) = (Vec::new(), Vec::new());
+        let (mut nodes, mut slots) = (Vec::new(), Vec::<u32>::new());
         for (place, &e) in elements.iter().enumerate() {
-            let (cell, own, density) = (problem.cell(e), problem.nodes(e), density[e]);
+            let (cell, own, density) = (problem.cell(e), problem.nodes(e), density[e.index()]);
             match runs.last_mut() {
                 Some(run) if run.cell == cell && run.density == density => run.count += 1,
                 _ => runs.push(Run { cell, density, stride: own.len(), first: place, count: 1, slot: slots.len() }),
@@ -64,17 +62,17 @@ impl Patch {
                 slots.push(*index);
             }
         }
-        let (starts, incident) = incidence(&slots, nodes.len());
-        let complete = |i: usize| (starts[i + 1] - starts[i]) as usize == problem.valence(nodes[i]);
+        let incident = Incidence::new(nodes.len(), slots.iter().map(|&node| node as usize).zip(0..));
+        let complete = |i: usize| incident.at(i).len() == problem.valence(nodes[i]);
         let mut movable: Vec<bool> = (0..nodes.len()).map(complete).collect();
         let periodic = periodic(images, &local, &mut movable);
         let targets = nodes.iter().map(|n| problem.straight[n.index()]).collect();
-        Patch { elements, runs, slots, nodes, movable, periodic, starts, incident, targets }
+        Patch { elements, runs, slots, nodes, movable, periodic, incident, targets }
     }
 
     /// Slots of a node's appearances in elements, rising.
     pub(super) fn incident(&self, node: usize) -> &[u32] {
-        &self.incident[self.starts[node] as usize..self.starts[node + 1] as usize]
+        self.incident.at(node)
     }
 }
 
@@ -89,21 +87,4 @@ fn periodic(images: &[Image], local: &[u32], movable: &mut [bool]) -> Vec<(usize
         }
     }
     found.into_iter().filter_map(|(node, of, map)| Some((node?, of?, map))).collect()
-}
-
-fn incidence(slots: &[u32], nodes: usize) -> (Vec<u32>, Vec<u32>) {
-    let mut starts = vec![0u32; nodes + 1];
-    for &node in slots {
-        starts[node as usize + 1] += 1;
-    }
-    for node in 0..nodes {
-        starts[node + 1] += starts[node];
-    }
-    let mut next = starts.clone();
-    let mut incident = vec![0; slots.len()];
-    for (slot, &node) in slots.iter().enumerate() {
-        incident[next[node as usize] as usize] = slot as u32;
-        next[node as usize] += 1;
-    }
-    (starts, incident)
 }

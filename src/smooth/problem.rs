@@ -1,4 +1,4 @@
-//! The mesh as the smoother sees it: volume elements by number, their straight positions, what each costs.
+//! The mesh as the smoother sees it: its cells by number, their straight positions, what each costs.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -6,18 +6,16 @@ use rayon::prelude::*;
 use super::kernel::{Element, Kernel};
 use super::survey::Scratch;
 use crate::element::{Cell, Order};
-use crate::mesh::{Block, Mesh, NodeId};
+use crate::mesh::{ElementId, Elements, Mesh, NodeId};
 use crate::quality::{Cut, element_c_wcn};
 
-/// The volume elements of an elevated mesh and their unperturbed positions.
+/// The cells of an elevated mesh and their unperturbed positions.
 pub struct Problem<'a> {
     pub(super) order: Order,
-    blocks: Vec<&'a Block>,
-    /// First element of each block, and the number of all elements.
-    firsts: Vec<usize>,
+    cells: Elements<'a>,
     /// The unperturbed position of every node.
     pub(super) straight: &'a [DVec3],
-    /// Number of volume elements around each node.
+    /// Number of cells around each node.
     valence: Vec<u32>,
 }
 
@@ -43,65 +41,53 @@ impl ElementCost {
 }
 
 impl<'a> Problem<'a> {
-    /// The volume elements of `mesh`; `straight` are the unperturbed positions of its nodes.
+    /// The cells of `mesh`; `straight` are the unperturbed positions of its nodes.
     #[must_use]
     pub fn new(mesh: &'a Mesh, straight: &'a [DVec3]) -> Problem<'a> {
-        let blocks: Vec<&Block> = mesh.blocks_of(3).map(|(_, block)| block).collect();
-        let mut firsts = vec![0];
-        let mut valence = vec![0; mesh.points.len()];
-        for block in &blocks {
-            firsts.push(firsts.last().unwrap_or(&0) + block.tags.len());
-            for node in &block.nodes {
-                valence[node.index()] += 1;
-            }
+        let cells = mesh.cells();
+        let mut valence = vec![0; straight.len()];
+        for node in cells.blocks().iter().flat_map(|block| &block.nodes) {
+            valence[node.index()] += 1;
         }
-        Problem { order: mesh.order, blocks, firsts, straight, valence }
-    }
-
-    /// Number of volume elements.
-    #[must_use]
-    pub fn element_count(&self) -> usize {
-        self.firsts.last().copied().unwrap_or(0)
+        Problem { order: mesh.order(), cells, straight, valence }
     }
 
     pub(super) fn node_count(&self) -> usize {
         self.straight.len()
     }
 
-    fn place(&self, element: usize) -> (&'a Block, usize) {
-        let block = self.firsts.partition_point(|&first| first <= element) - 1;
-        (self.blocks[block], element - self.firsts[block])
-    }
-
     /// The cell of an element.
     #[must_use]
-    pub fn cell(&self, element: usize) -> Cell {
-        self.place(element).0.cell
+    pub fn cell(&self, element: ElementId) -> Cell {
+        self.cells.cell(element)
     }
 
     /// The nodes of an element, in internal order.
     #[must_use]
-    pub fn nodes(&self, element: usize) -> &'a [NodeId] {
-        let (block, index) = self.place(element);
-        let stride = block.stride(self.order);
-        &block.nodes[index * stride..(index + 1) * stride]
+    pub fn nodes(&self, element: ElementId) -> &'a [NodeId] {
+        self.cells.nodes(element)
     }
 
     pub(super) fn valence(&self, node: NodeId) -> usize {
         self.valence[node.index()] as usize
     }
 
-    /// The cells that occur.
-    pub(super) fn cells(&self) -> Vec<Cell> {
-        let mut cells: Vec<Cell> = self.blocks.iter().map(|b| b.cell).collect();
+    /// The kinds of cells that occur.
+    pub(super) fn kinds(&self) -> Vec<Cell> {
+        let mut cells: Vec<Cell> = self.cells.blocks().iter().map(|b| b.cell).collect();
         cells.sort_unstable();
         cells.dedup();
         cells
     }
 
-    /// The numbers of all elements.
-    pub(super) fn elements(&self) -> rayon::range::Iter<usize> {
-        (0..self.element_count()).into_par_iter()
+    /// The numbers of all elements, rising.
+    pub(super) fn ids(&self) -> impl ExactSizeIterator<Item = ElementId> + Clone + use<> {
+        self.cells.ids()
+    }
+
+    /// The numbers of all elements, rising, in parallel.
+    pub(super) fn elements(&self) -> impl IndexedParallelIterator<Item = ElementId> + Clone + use<> {
+        self.cells.par_ids()
     }
 
     /// Costs of the given elements at the positions `x` of all nodes.
@@ -109,9 +95,9 @@ impl<'a> Problem<'a> {
         &self,
         kernels: &Kernels,
         x: &[DVec3],
-        elements: impl IndexedParallelIterator<Item = usize>,
+        elements: impl IndexedParallelIterator<Item = ElementId>,
     ) -> Vec<ElementCost> {
-        let cost = |(scratch, points, targets): &mut (Scratch, Vec<DVec3>, Vec<DVec3>), e: usize| {
+        let cost = |(scratch, points, targets): &mut (Scratch, Vec<DVec3>, Vec<DVec3>), e: ElementId| {
             let nodes = self.nodes(e);
             let origin = self.straight[nodes[0].index()];
             points.clear();
@@ -136,7 +122,7 @@ pub(super) struct Kernels(Vec<(Cell, Kernel)>);
 impl Kernels {
     pub(super) fn new(problem: &Problem, divisions: usize) -> Kernels {
         let kernel = |cell| (cell, Kernel::new(cell, problem.order, divisions));
-        Kernels(problem.cells().into_iter().map(kernel).collect())
+        Kernels(problem.kinds().into_iter().map(kernel).collect())
     }
 
     /// The kernel of a cell that occurs in the problem.

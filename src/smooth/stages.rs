@@ -25,6 +25,7 @@ use super::pace::{MOST_RINGS, PATIENCE, Pace, RINGS, Stage};
 use super::patch::Patch;
 use super::problem::Kernels;
 use super::{Checkpoint, Constraint, ElementCost, Image, Problem, Progress, Settings, Smoothed, Summary, Watch};
+use crate::mesh::ElementId;
 use crate::quality;
 
 /// A survey is too coarse for an element where it misses this much of its `C_JAC`.
@@ -207,9 +208,9 @@ impl Run<'_, '_> {
 
     /// Whether an element with one of the smallest `C_JAC`, below the threshold, has a node on a wall.
     fn walls_hold_back(&self) -> bool {
-        let anchored = |e: usize| self.problem.nodes(e).iter().any(|&n| self.constraint.anchor(n).is_some());
+        let anchored = |e: ElementId| self.problem.nodes(e).iter().any(|&n| self.constraint.anchor(n).is_some());
         let level = self.focus()[1];
-        (0..self.costs.len()).any(|e| self.costs[e].c_jac < level && anchored(e))
+        self.problem.ids().any(|e| self.costs[e.index()].c_jac < level && anchored(e))
     }
 
     fn goes_on(&self) -> bool {
@@ -217,7 +218,7 @@ impl Run<'_, '_> {
     }
 
     /// Elements with a cost below its level (`C_WCN`, `C_JAC`), and rings of elements around them.
-    fn activate(&self, levels: [f64; 2], rings: usize) -> Vec<usize> {
+    fn activate(&self, levels: [f64; 2], rings: usize) -> Vec<ElementId> {
         let full = self.pace.stage == Stage::Full;
         let below = |c: &ElementCost| c.c_wcn < levels[0] || (full && c.c_jac < levels[1]);
         if !self.costs.iter().any(below) {
@@ -226,21 +227,21 @@ impl Run<'_, '_> {
         let mut active: Vec<bool> = self.costs.iter().map(below).collect();
         for _ in 0..rings {
             let mut touched = vec![false; self.problem.node_count()];
-            for e in (0..active.len()).filter(|&e| active[e]) {
+            for e in self.problem.ids().filter(|e| active[e.index()]) {
                 for node in self.problem.nodes(e) {
                     touched[node.index()] = true;
                 }
             }
             Image::spread(self.constraint.images(), &mut touched);
-            for (e, active) in active.iter_mut().enumerate() {
+            for (e, active) in self.problem.ids().zip(&mut active) {
                 *active |= self.problem.nodes(e).iter().any(|n| touched[n.index()]);
             }
         }
-        (0..active.len()).filter(|&e| active[e]).collect()
+        self.problem.ids().filter(|e| active[e.index()]).collect()
     }
 
     /// One round: a survey dense enough, a descent, and what it gained.
-    fn round(&mut self, active: &[usize], x: &mut [DVec3]) {
+    fn round(&mut self, active: &[ElementId], x: &mut [DVec3]) {
         let (before, first) = (self.standing(), self.sweeps);
         self.densify(active, x);
         let patch = Patch::new(self.problem, active, &self.density, self.constraint.images());
@@ -275,8 +276,8 @@ impl Run<'_, '_> {
         for node in (0..best.len()).filter(|&n| best[n] != x[n]) {
             self.best.places.insert(node as u32, best[node]);
         }
-        for e in (0..costs.len()).filter(|&e| costs[e] != self.costs[e]) {
-            self.best.costs.insert(e as u32, costs[e]);
+        for (e, cost) in self.problem.ids().zip(costs).filter(|(e, cost)| *cost != self.costs[e.index()]) {
+            self.best.costs.insert(e, cost);
         }
         let densest = (self.surveys.len() - 1) as u8;
         self.density = checkpoint.density.iter().map(|&density| density.min(densest)).collect();
@@ -313,11 +314,11 @@ impl Run<'_, '_> {
     }
 
     /// Takes the costs of changed elements, and keeps the state if it is the best.
-    fn survey(&mut self, elements: &[usize], x: &[DVec3]) {
+    fn survey(&mut self, elements: &[ElementId], x: &[DVec3]) {
         let closing = &self.surveys[self.surveys.len() - 1];
         let (own, level) = (elements.par_iter().copied(), self.settings.threshold);
         for (&e, cost) in elements.iter().zip(confirmed_costs(self.problem, closing, level, own, x)) {
-            self.costs[e] = cost;
+            self.costs[e.index()] = cost;
         }
         let summary = Summary::of(&self.costs);
         if summary.beats(self.best.summary) {
@@ -326,15 +327,16 @@ impl Run<'_, '_> {
     }
 
     /// Gives a denser survey to elements on which their own is blind.
-    fn densify(&mut self, active: &[usize], x: &[DVec3]) {
+    fn densify(&mut self, active: &[ElementId], x: &[DVec3]) {
         let densest = (self.surveys.len() - 1) as u8;
         for own in 0..densest {
-            let seen = |&e: &usize| self.density[e] == own && self.costs[e].c_jac < self.settings.threshold;
-            let elements: Vec<usize> = active.iter().copied().filter(seen).collect();
+            let low = |e: usize| self.density[e] == own && self.costs[e].c_jac < self.settings.threshold;
+            let seen = |e: &ElementId| low(e.index());
+            let elements: Vec<ElementId> = active.iter().copied().filter(seen).collect();
             let sights = self.problem.costs(&self.surveys[usize::from(own)], x, elements.par_iter().copied());
             for (&e, sight) in elements.iter().zip(&sights) {
-                if sight.c_jac - self.costs[e].c_jac > BLIND {
-                    self.density[e] = own + 1;
+                if sight.c_jac - self.costs[e.index()].c_jac > BLIND {
+                    self.density[e.index()] = own + 1;
                 }
             }
         }
@@ -348,8 +350,8 @@ impl Run<'_, '_> {
         let around = delta(self.lowest()).min(AROUND);
         let (shape, jacobian) = if stage == Stage::Shape { (1.0, 0.0) } else { (alpha, 1.0 - alpha) };
         let weights = Weights { shape, jacobian, density: Density { emphasis: EMPHASIS, delta: 0.0 } };
-        let deltas = patch.elements.iter().map(|&e| delta(stage.cost(&self.costs[e])).max(around)).collect();
-        let cuts = patch.elements.iter().map(|&e| self.costs[e].cut).collect();
+        let deltas = patch.elements.iter().map(|&e| delta(stage.cost(&self.costs[e.index()])).max(around)).collect();
+        let cuts = patch.elements.iter().map(|&e| self.costs[e.index()].cut).collect();
         let kernels = patch.runs.iter().map(|run| self.surveys[usize::from(run.density)].of(run.cell)).collect();
         let anchored = |i: usize| {
             patch.movable[i]
@@ -379,8 +381,9 @@ impl Run<'_, '_> {
 
     fn progress(&self, patch: &Patch) -> Progress {
         let stage = self.pace.stage;
-        let worst = |&a: &usize, &b: &usize| stage.cost(&self.costs[a]).total_cmp(&stage.cost(&self.costs[b]));
-        let element = patch.elements.iter().copied().min_by(worst).unwrap_or(0);
+        let cost = |e: ElementId| stage.cost(&self.costs[e.index()]);
+        let worst = |&a: &ElementId, &b: &ElementId| cost(a).total_cmp(&cost(b));
+        let element = patch.elements.iter().copied().min_by(worst).unwrap_or_default();
         let nodes = self.problem.nodes(element);
         let middle: DVec3 = nodes.iter().map(|n| self.problem.straight[n.index()]).sum();
         let summary = Summary::of(&self.costs);
@@ -389,7 +392,7 @@ impl Run<'_, '_> {
             sweep: self.sweeps,
             max_sweeps: self.settings.max_sweeps,
             active_nodes: patch.movable.iter().filter(|&&m| m).count(),
-            worst: stage.cost(&self.costs[element]),
+            worst: cost(element),
             costs: [summary.c_wcn, summary.c_jac],
             at: middle / nodes.len() as f64,
             inverted: self.costs.iter().filter(|c| stage.cost(c) <= 0.0).count(),

@@ -12,7 +12,7 @@ pub struct Smoothed {
     pub sweeps: usize,
     /// Whether `watch` ended it.
     pub stopped: bool,
-    /// Costs of every volume element, by the closing survey.
+    /// Costs of every cell, by the closing survey.
     pub costs: Vec<ElementCost>,
     /// Smallest costs before the first sweep, by the closing survey.
     pub start: Summary,

@@ -5,8 +5,7 @@ use rustc_hash::FxHashSet;
 
 use super::called;
 use super::linked_mesh::LinkedMesh;
-use crate::element::{Order, canonical};
-use crate::mesh::NodeId;
+use crate::mesh::{FaceKey, NodeId, PhysicalName};
 
 pub(super) fn check(linked: &LinkedMesh<'_>, models: &[&ModelLinks<'_>], findings: &mut Findings) {
     let mut inner = None;
@@ -137,13 +136,15 @@ fn points(linked: &LinkedMesh<'_>, run: &PointRun, findings: &mut Findings) {
 
 /// What is called by name can only be found under the names that the mesh has.
 fn names(linked: &LinkedMesh<'_>, links: &ModelLinks<'_>, findings: &mut Findings) {
-    let known = |name: &str, dimension: u8| {
-        linked.mesh.physical_names.iter().any(|own| own.dimension == dimension && own.name == name)
+    let known = |name: &str, kind: fn(&PhysicalName) -> bool| {
+        linked.mesh.physical_names().iter().any(|own| kind(own) && own.name == name)
     };
     for sheet in &links.sheets {
         let runs = sheet.named.iter().map(|link| (link.run.origin, format!("{} faces", link.run.references.len())));
-        let whole =
-            sheet.reference.filter(|name| !known(name, 2)).map(|name| (sheet.sheet.origin, format!("{name:?}")));
+        let whole = sheet
+            .reference
+            .filter(|name| !known(name, PhysicalName::is_of_surfaces))
+            .map(|name| (sheet.sheet.origin, format!("{name:?}")));
         for (origin, what) in runs.chain(whole) {
             findings.push(Code::UnknownMeshName, origin, || {
                 format!(
@@ -155,8 +156,10 @@ fn names(linked: &LinkedMesh<'_>, links: &ModelLinks<'_>, findings: &mut Finding
     }
     for string in &links.strings {
         let runs = string.named.iter().map(|link| (link.run.origin, format!("{} edges", link.run.references.len())));
-        let whole =
-            string.reference.filter(|name| !known(name, 1)).map(|name| (string.string.origin, format!("{name:?}")));
+        let whole = string
+            .reference
+            .filter(|name| !known(name, PhysicalName::is_of_curves))
+            .map(|name| (string.string.origin, format!("{name:?}")));
         for (origin, what) in runs.chain(whole) {
             findings.push(Code::UnknownMeshName, origin, || {
                 format!(
@@ -168,28 +171,15 @@ fn names(linked: &LinkedMesh<'_>, links: &ModelLinks<'_>, findings: &mut Finding
     }
 }
 
-/// The faces of all volume elements.
-struct Inner(FxHashSet<Vec<NodeId>>);
+/// The sides of all cells.
+struct Inner(FxHashSet<FaceKey>);
 
 impl Inner {
     fn new(linked: &LinkedMesh<'_>) -> Inner {
-        let mut faces = FxHashSet::default();
-        for (_, block) in linked.mesh.blocks_of(3) {
-            for nodes in block.elements(Order::LINEAR) {
-                for face in block.cell.faces() {
-                    let corners: Vec<NodeId> = face.corners.iter().map(|&c| nodes[usize::from(c)]).collect();
-                    faces.insert(key(&corners));
-                }
-            }
-        }
-        Inner(faces)
+        Inner(linked.mesh.cells().iter().flat_map(|cell| cell.sides()).collect())
     }
 
     fn has(&self, corners: &[NodeId]) -> bool {
-        self.0.contains(&key(corners))
+        self.0.contains(&FaceKey::new(corners))
     }
-}
-
-fn key(corners: &[NodeId]) -> Vec<NodeId> {
-    canonical(corners)[..corners.len()].iter().map(|&q| corners[usize::from(q)]).collect()
 }

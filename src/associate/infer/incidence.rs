@@ -8,7 +8,6 @@ use rayon::prelude::*;
 
 use super::Tolerance;
 use crate::associate::Joints;
-use crate::element::Order;
 use crate::mesh::{Boundary, Mesh, NodeId};
 
 /// The middle of a mesh edge may be this far from the CAD edge that it runs along; fraction of its length (an arc of 180 degrees has 0.5).
@@ -99,14 +98,11 @@ impl Incidence {
 /// How far each boundary node may be from what holds it; `None` inside the volume.
 fn slacks(mesh: &Mesh, boundary: &Boundary, tolerance: &Tolerance) -> Vec<Option<f64>> {
     let mut shortest = vec![f64::INFINITY; mesh.points.len()];
-    for (_, block) in mesh.blocks.iter().enumerate().filter(|(_, block)| block.cell.dimension() >= 2) {
-        for nodes in block.elements(Order::LINEAR) {
-            for &[a, b] in block.cell.edges() {
-                let [a, b] = [a, b].map(|q| nodes[usize::from(q)].index());
-                let length = mesh.points[a].distance(mesh.points[b]);
-                shortest[a] = shortest[a].min(length);
-                shortest[b] = shortest[b].min(length);
-            }
+    let cells = mesh.cells();
+    for [a, b] in cells.iter().flat_map(|cell| cell.edges()).chain(boundary.edges.iter().copied()) {
+        let length = mesh.points()[a.index()].distance(mesh.points()[b.index()]);
+        for end in [a, b] {
+            shortest[end.index()] = shortest[end.index()].min(length);
         }
     }
     let mut slacks = vec![None; mesh.points.len()];

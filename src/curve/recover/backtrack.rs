@@ -12,7 +12,7 @@ use crate::certify::{self, Buffer, Elements, MeshElements};
 use crate::curve::level::Level;
 use crate::curve::proof::{Proof, behind, walls};
 use crate::element::{Cell, Order};
-use crate::mesh::NodeId;
+use crate::mesh::ElementId;
 
 /// A fraction of the displacement below this counts as none.
 const LEAST_FRACTION: f64 = 0.125;
@@ -51,10 +51,10 @@ pub fn backtrack(level: &mut Level, fallback: &Fallback, proof: Proof) -> (Vec<f
 }
 
 /// Elements of those touched that still fail, and those behind faces that still fold.
-fn still_failing(level: &Level, touched: &[usize], fractions: &[f64]) -> Vec<usize> {
+fn still_failing(level: &Level, touched: &[ElementId], fractions: &[f64]) -> Vec<ElementId> {
     let whole = MeshElements::new(level.mesh(), &level.curved, Some(level.linear()));
     let outcome = certify::certify(&Subset { whole, elements: touched }, &certify::Settings::default());
-    let mut failing: Vec<usize> = outcome.failures.iter().map(|judged| touched[judged.element]).collect();
+    let mut failing: Vec<ElementId> = outcome.failures.iter().map(|judged| judged.element).collect();
     let nodes = |f: usize| level.case.boundary.nodes(f, level.mesh());
     let moved = |f: usize| nodes(f).iter().any(|n| fractions[n.index()] < 1.0);
     failing.extend(behind(level, &walls(level, moved)));
@@ -63,26 +63,28 @@ fn still_failing(level: &Level, touched: &[usize], fractions: &[f64]) -> Vec<usi
 
 /// Halves the fractions around failing elements; returns all elements that have a node with a changed fraction, none where all
 /// fractions were zero already.
-fn take_back(level: &Level, failing: &[usize], fractions: &mut [f64]) -> Vec<usize> {
-    let mesh = level.mesh();
+fn take_back(level: &Level, failing: &[ElementId], fractions: &mut [f64]) -> Vec<ElementId> {
+    let cells = level.mesh().cells();
     let mut changed = vec![false; fractions.len()];
-    let elements: Vec<&[NodeId]> = mesh.blocks_of(3).flat_map(|(_, block)| block.elements(mesh.order)).collect();
-    failing.iter().flat_map(|&e| elements[e]).for_each(|n| changed[n.index()] = true);
-    let near = |changed: &[bool], e: usize| elements[e].iter().any(|n| changed[n.index()]);
-    let ring: Vec<usize> = (0..elements.len()).filter(|&e| near(&changed, e)).collect();
-    ring.iter().flat_map(|&e| elements[e]).for_each(|n| changed[n.index()] = true);
+    failing.iter().flat_map(|&e| cells.nodes(e)).for_each(|n| changed[n.index()] = true);
+    let around = |changed: &[bool]| -> Vec<ElementId> {
+        let near = cells.iter().filter(|own| own.nodes.iter().any(|n| changed[n.index()]));
+        near.map(|own| own.id).collect()
+    };
+    let ring = around(&changed);
+    ring.iter().flat_map(|&e| cells.nodes(e)).for_each(|n| changed[n.index()] = true);
     level.periodic.spread(&mut changed);
     changed.iter_mut().zip(&*fractions).for_each(|(changed, &fraction)| *changed &= fraction > 0.0);
     for (fraction, _) in fractions.iter_mut().zip(&changed).filter(|(_, changed)| **changed) {
         *fraction = if *fraction <= LEAST_FRACTION { 0.0 } else { 0.5 * *fraction };
     }
-    (0..elements.len()).filter(|&e| near(&changed, e)).collect()
+    around(&changed)
 }
 
-/// Some elements of a mesh.
+/// Some cells of a mesh.
 struct Subset<'a> {
     whole: MeshElements<'a>,
-    elements: &'a [usize],
+    elements: &'a [ElementId],
 }
 
 impl Elements for Subset<'_> {
@@ -90,7 +92,15 @@ impl Elements for Subset<'_> {
         self.elements.len()
     }
 
-    fn read(&self, element: usize, into: &mut Buffer) -> (Cell, Order) {
-        self.whole.read(self.elements[element], into)
+    fn id(&self, place: usize) -> ElementId {
+        self.elements[place]
+    }
+
+    fn place(&self, element: ElementId) -> usize {
+        self.elements.partition_point(|&own| own < element)
+    }
+
+    fn read(&self, element: ElementId, into: &mut Buffer) -> (Cell, Order) {
+        self.whole.read(element, into)
     }
 }

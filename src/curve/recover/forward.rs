@@ -9,6 +9,7 @@
 
 use super::recovery::{Recovery, SWEEPS};
 use crate::curve::wall_state::Wall;
+use crate::mesh::ElementId;
 use crate::smooth;
 
 /// The first step, as a fraction of the whole way.
@@ -70,7 +71,7 @@ impl Recovery<'_, '_> {
     }
 
     /// Does what is asked, or, where the mesh is not proven valid after it, nothing; then the elements that fail are returned.
-    fn attempt(&mut self, attempt: impl FnOnce(&mut Self)) -> Result<(), Vec<usize>> {
+    fn attempt(&mut self, attempt: impl FnOnce(&mut Self)) -> Result<(), Vec<ElementId>> {
         let (curved, wall) = (self.level.curved.clone(), self.level.wall.clone());
         let (smoothed, proof) = (self.smoothed.clone(), self.proof.clone());
         attempt(self);
@@ -97,7 +98,7 @@ impl Recovery<'_, '_> {
     }
 
     /// The walls around some elements go no farther.
-    fn stay(&self, elements: &[usize], pull: &mut [f64]) {
+    fn stay(&self, elements: &[ElementId], pull: &mut [f64]) {
         let mut own = self.fractions_around(elements, 1, 0.0);
         self.level.periodic.least(&mut own);
         pull.iter_mut().zip(own).for_each(|(pull, own)| *pull = pull.min(own));

@@ -12,6 +12,7 @@ use crate::curve::perturb::perturb;
 use crate::curve::proof::Proof;
 use crate::curve::smoothing::smooth_level;
 use crate::element::Order;
+use crate::mesh::ElementId;
 use crate::smooth::{self, Problem, Smoothed, Watch};
 
 /// Rounds in which the displacement is taken back; the fraction that stays is halved from one to the next, and none is left in the
@@ -116,7 +117,7 @@ impl Recovery<'_, '_> {
     }
 
     /// Takes the displacement back around the elements that fail.
-    fn take_back(&mut self, round: usize, failing: &[usize]) {
+    fn take_back(&mut self, round: usize, failing: &[ElementId]) {
         let keep = if round == ROUNDS { 0.0 } else { 0.5 };
         let mut fractions = self.fractions_around(failing, round, keep);
         self.level.periodic.least(&mut fractions);
@@ -179,7 +180,7 @@ impl Recovery<'_, '_> {
     }
 
     /// What each node keeps where `keep` is kept around some elements.
-    pub(super) fn fractions_around(&self, elements: &[usize], times: usize, keep: f64) -> Vec<f64> {
+    pub(super) fn fractions_around(&self, elements: &[ElementId], times: usize, keep: f64) -> Vec<f64> {
         let straight = self.level.straight();
         let on_wall = (0..straight.len()).filter(|&n| self.level.on_curved_wall(n));
         let wall: Vec<DVec3> = on_wall.map(|n| straight[n]).collect();

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::mesh::{Mesh, NodeId};
+use crate::mesh::{ElementId, Mesh};
 
 /// Reach, in distances to the wall plus the element's size.
 const REACH: f64 = 2.0;
@@ -16,11 +16,10 @@ pub(super) struct Spot {
 
 impl Spot {
     /// Those of some elements of the straight `mesh`, `times` as far as to the wall, whose nodes are at `wall`.
-    pub(super) fn around(elements: &[usize], mesh: &Mesh, wall: &[DVec3], times: usize) -> Vec<Spot> {
-        let straight = &mesh.points;
-        let all: Vec<&[NodeId]> = mesh.blocks_of(3).flat_map(|(_, block)| block.elements(mesh.order)).collect();
-        let spot = |&element: &usize| {
-            let nodes = all[element];
+    pub(super) fn around(elements: &[ElementId], mesh: &Mesh, wall: &[DVec3], times: usize) -> Vec<Spot> {
+        let (straight, cells) = (mesh.points(), mesh.cells());
+        let spot = |&element: &ElementId| {
+            let nodes = cells.nodes(element);
             let middle = nodes.iter().map(|n| straight[n.index()]).sum::<DVec3>() / nodes.len() as f64;
             let size = nodes.iter().map(|n| straight[n.index()].distance(middle)).fold(0.0, f64::max);
             let nearest = wall.iter().map(|w| w.distance_squared(middle)).fold(f64::INFINITY, f64::min).sqrt();
