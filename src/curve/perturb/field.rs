@@ -3,6 +3,7 @@
 use cad::{Aabb, BoxTree};
 use glam::DVec3;
 
+use super::roots::Roots;
 use crate::element::{Cell, Order, basis};
 use crate::mesh::NodeId;
 use crate::mesh::elevate::Elevated;
@@ -39,8 +40,8 @@ pub(super) struct Field<'a> {
     reach: Vec<f64>,
     /// At each wall vertex, the distance from it at which the displacement must have ended.
     ends: Vec<f64>,
-    /// Root of every linear node: a wall vertex; `None` where no path leads to a wall.
-    roots: Vec<Option<u32>>,
+    /// Root of every linear node: a wall vertex.
+    roots: Roots,
     /// Wall faces around each wall vertex, by node: ranges of `around`.
     starts: Vec<u32>,
     around: Vec<u32>,
@@ -65,7 +66,7 @@ impl<'a> Field<'a> {
         wall: &'a [WallFace],
         displacement: &'a [DVec3],
         seeds: &[bool],
-        roots: Vec<Option<u32>>,
+        roots: Roots,
         inherited: &[f64],
         beyond: impl Fn(usize) -> bool,
     ) -> Field<'a> {
@@ -80,7 +81,7 @@ impl<'a> Field<'a> {
         for (own, &inherited) in reach.iter_mut().zip(inherited) {
             *own = own.max(inherited);
         }
-        let ends = ends(points, &roots, beyond);
+        let ends = ends(points, &roots.of, beyond);
         Field {
             reach,
             ends,
@@ -98,7 +99,12 @@ impl<'a> Field<'a> {
 
     /// For every linear node the reach at its root: a plane that is carried by a wall carries the volume as far as the wall does.
     pub(super) fn reach_of_roots(&self) -> Vec<f64> {
-        self.roots.iter().map(|root| root.map_or(0.0, |root| self.reach[root as usize])).collect()
+        self.roots.of.iter().map(|root| root.map_or(0.0, |root| self.reach[root as usize])).collect()
+    }
+
+    /// Distance to the wall along mesh edges at the combination `weights` of linear nodes; not finite where no path leads to it.
+    pub(super) fn distance(&self, corners: &[usize], weights: &[f64]) -> f64 {
+        corners.iter().zip(weights).map(|(&c, &w)| self.roots.length[c] * w).sum()
     }
 
     /// The displacement at the combination `weights` of linear nodes.
@@ -131,7 +137,7 @@ impl<'a> Field<'a> {
     fn foot_by_roots(&self, corners: &[usize], weights: &[f64]) -> Option<Foot> {
         let mut own = [0u32; 8];
         for (root, &corner) in own.iter_mut().zip(corners) {
-            *root = self.roots[corner]?;
+            *root = self.roots.of[corner]?;
         }
         let own = &own[..corners.len()];
         let first = own[0] as usize;

@@ -39,6 +39,19 @@
 //! by curved walls and planes. A vertex of a plane counts as a wall of its own, for roots, where the shortest mesh edge at it
 //! leaves the plane, as at a wing's cap; at a symmetry plane the layers lie in the plane and keep their roots on the wing.
 
+//!
+//! # Walls that are held
+//!
+//! A boundary face that is neither on the CAD nor in a plane stays straight, but for its rim, which lies on the CAD curve of the curved
+//! patch beside it. It is a wall too: the layers over it follow it. Between the two kinds of wall the displacement is
+//!
+//! `u = w u_curved + (1 - w) u_held`, `w = d_held / (d_curved + d_held)`,
+//!
+//! `d` the distances along mesh edges. It is linear along a column from one wall to the other, so that every layer of a stack of height
+//! `H` is squeezed alike, by `1 - P / H`: a decay that is steeper anywhere inverts a layer sooner. At the rim the two displacements are
+//! the same, and so is `u`. Without it `--curve 2` on the weeble began with `C_JAC` -105 and ended with all 151 faces off the CAD.
+
+mod between;
 mod field;
 mod roots;
 
@@ -49,6 +62,7 @@ use super::level::{Case, Level};
 use crate::associate::Classification;
 use crate::mesh::Boundary;
 use crate::mesh::elevate::Elevated;
+use between::{Between, Held};
 use field::Field;
 pub use field::WallFace;
 use roots::Graph;
@@ -65,7 +79,12 @@ pub fn perturb(level: &Level, mut displacement: Vec<DVec3>) -> Vec<DVec3> {
     let linear = elevated.linear_nodes;
     let classification = |n: usize| state.classification(n);
     let mut wall = wall_faces(elevated, boundary, |f| curved(association.faces[f]));
+    let mut straight = wall_faces(elevated, boundary, |f| association.faces[f] == Classification::Straight);
     let nodes = elevated.mesh.points.len();
+    let moves = |face: &WallFace| face.nodes.iter().any(|n| displacement[n.index()] != DVec3::ZERO);
+    if wall.is_empty() && straight.iter().any(moves) {
+        wall = std::mem::take(&mut straight); // the rims of planes are all that is curved
+    }
     if wall.is_empty() {
         displacement.resize(nodes, DVec3::ZERO);
         return sum(level, displacement);
@@ -82,26 +101,32 @@ pub fn perturb(level: &Level, mut displacement: Vec<DVec3>) -> Vec<DVec3> {
     let mut all_seeds = graph.walls_of_their_own(|n| planar(classification(n)), &on(&planes));
     all_seeds.iter_mut().zip(&seeds).for_each(|(all, seed)| *all |= seed);
     let (roots, all_roots) = rayon::join(|| graph.roots(&seeds), || graph.roots(&all_seeds));
+    let held = (!straight.is_empty()).then(|| Held::new(straight, on, &graph));
     drop(graph);
 
     let in_plane = |n: usize| n >= linear && planar(classification(n));
     let beyond = |n: usize| state.is_beyond_layers(n);
     let field = Field::new(elevated, &wall, &displacement, &seeds, roots, &[], beyond);
     let reach = field.reach_of_roots();
-    let mut carried = carry(&field, elevated, displacement.clone(), in_plane);
+    let between =
+        Between { curved: field, held: held.as_ref().map(|held| held.field(elevated, &displacement, beyond)) };
+    let mut carried = carry(&between, elevated, displacement.clone(), in_plane);
     carried.par_iter_mut().enumerate().skip(linear).for_each(|(n, d)| {
         if let Some(plane) = level.plane_of(n) {
             *d = plane.closest(elevated.mesh.points[n] + *d) - elevated.mesh.points[n];
         }
     });
+    drop(between);
     displacement = carried;
     level.periodic.carry(&elevated.mesh.points, &mut displacement);
 
     wall.extend(planes);
     let field = Field::new(elevated, &wall, &displacement, &all_seeds, all_roots, &reach, beyond);
+    let between =
+        Between { curved: field, held: held.as_ref().map(|held| held.field(elevated, &displacement, beyond)) };
     let mut whole = displacement.clone();
     whole.resize(nodes, DVec3::ZERO);
-    let whole = carry(&field, elevated, whole, |n| classification(n) == Classification::Free);
+    let whole = carry(&between, elevated, whole, |n| classification(n) == Classification::Free);
     sum(level, whole)
 }
 
@@ -124,7 +149,12 @@ fn wall_faces(elevated: &Elevated, boundary: &Boundary, of: impl Fn(usize) -> bo
 }
 
 /// Displacements of all nodes: those that `follows` from the field, the others as given.
-fn carry(field: &Field, elevated: &Elevated, given: Vec<DVec3>, follows: impl Fn(usize) -> bool + Sync) -> Vec<DVec3> {
+fn carry(
+    field: &Between,
+    elevated: &Elevated,
+    given: Vec<DVec3>,
+    follows: impl Fn(usize) -> bool + Sync,
+) -> Vec<DVec3> {
     let mut result = given;
     let offset = elevated.linear_nodes;
     let (vertices, new) = result.split_at_mut(offset);

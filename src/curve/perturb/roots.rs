@@ -9,6 +9,15 @@ use rayon::prelude::*;
 use crate::element::Cell;
 use crate::mesh::elevate::Elevated;
 
+/// The root of every linear node.
+#[derive(Clone)]
+pub(super) struct Roots {
+    /// The seed that it hangs on; `None` where no path leads to one.
+    pub(super) of: Vec<Option<u32>>,
+    /// Length of the shortest path to it; infinite where there is none.
+    pub(super) length: Vec<f64>,
+}
+
 /// The mesh edges at each linear node.
 pub(super) struct Graph<'a> {
     points: &'a [DVec3],
@@ -45,11 +54,11 @@ impl<'a> Graph<'a> {
         &self.neighbours[self.starts[node] as usize..self.starts[node + 1] as usize]
     }
 
-    /// For every linear node the seed at the end of the shortest path along mesh edges (Dijkstra from all seeds at once; periodic
-    /// go to the smaller seed); `None` where no path leads to one.
-    pub(super) fn roots(&self, seeds: &[bool]) -> Vec<Option<u32>> {
+    /// For every linear node the seed at the end of the shortest path along mesh edges (Dijkstra from all seeds at once; equal paths
+    /// go to the smaller seed), and the length of that path.
+    pub(super) fn roots(&self, seeds: &[bool]) -> Roots {
         let linear_nodes = self.points.len();
-        let mut roots: Vec<Option<u32>> = vec![None; linear_nodes];
+        let mut of: Vec<Option<u32>> = vec![None; linear_nodes];
         let mut length = vec![f64::INFINITY; linear_nodes];
         let mut queue = BinaryHeap::new();
         for node in (0..linear_nodes).filter(|&n| seeds[n]) {
@@ -58,21 +67,20 @@ impl<'a> Graph<'a> {
         }
         while let Some(Reverse((Length(so_far), root, node))) = queue.pop() {
             let node = node as usize;
-            if roots[node].is_some() {
+            if of[node].is_some() {
                 continue;
             }
-            roots[node] = Some(root);
+            of[node] = Some(root);
             for &next in self.around(node) {
                 let further = so_far + self.points[node].distance(self.points[next as usize]);
-                if further < length[next as usize]
-                    || (further == length[next as usize] && roots[next as usize].is_none())
+                if further < length[next as usize] || (further == length[next as usize] && of[next as usize].is_none())
                 {
                     length[next as usize] = further;
                     queue.push(Reverse((Length(further), root, next)));
                 }
             }
         }
-        roots
+        Roots { of, length }
     }
 
     /// Which linear nodes of planes are walls of their own: the shortest mesh edge there leaves the planes.
