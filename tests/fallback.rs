@@ -40,7 +40,6 @@ fn where_no_time_is_left_faces_keep_their_curve_of_p2() {
     let ended_after = |patience: usize| {
         let [mesh, cad, linkage] = ["msh", "step", "meshlink.xml"].map(torus);
         let mut job = Job::new(mesh, cad, Some(linkage), Order::new(3).unwrap());
-        job.reading.reader = env!("CARGO_BIN_EXE_sagitta").into();
         job.settings.smoothing.max_sweeps = 20;
         let curved = job.run(&mut Impatient::new(3, patience)).unwrap();
         assert!(curved.smoothed.stopped && curved.certificate.holds(), "{patience}");

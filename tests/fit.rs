@@ -56,8 +56,7 @@ impl Outcome {
     fn of(case: &str, order: usize) -> Outcome {
         let linear = formats::read(&fixture(case, "msh")).unwrap();
         let boundary = Boundary::new(&linear);
-        let reading = ReadOptions { reader: env!("CARGO_BIN_EXE_sagitta").into(), ..ReadOptions::default() };
-        let model = Model::read(&fixture(case, "step"), &reading).unwrap();
+        let model = Model::read(&fixture(case, "step"), &ReadOptions::default()).unwrap();
         let association = classify(None, &linear, &boundary, &model, 1e-3, &|_| {}).unwrap().association;
         let settings = Settings::new(Order::new(order).unwrap());
         let case_of_all = Case { settings: &settings, boundary: &boundary, association: &association };
@@ -114,8 +113,7 @@ fn a_cylinder_stays_as_projected() {
 fn the_inside_of_straight_faces_follows_their_rims() {
     let (linear, order) = (formats::read(&fixture("weeble", "msh")).unwrap(), Order::new(3).unwrap());
     let boundary = Boundary::new(&linear);
-    let reading = ReadOptions { reader: env!("CARGO_BIN_EXE_sagitta").into(), ..ReadOptions::default() };
-    let model = Model::read(&fixture("weeble", "step"), &reading).unwrap();
+    let model = Model::read(&fixture("weeble", "step"), &ReadOptions::default()).unwrap();
     let mut association = classify(None, &linear, &boundary, &model, 1e-3, &|_| {}).unwrap().association;
     let third = |surface: &Surface| surface.group.entities() == [EntityId::Face(FaceId::new(2))];
     let waist = association.surfaces.iter().position(third).unwrap();

@@ -38,8 +38,7 @@ fn line_of(text: &str, needle: &str) -> u64 {
 fn nodes_where_the_edges_of_a_string_meet_are_held() {
     let linear = sagitta::formats::read(&m6("msh")).unwrap();
     let boundary = Boundary::new(&linear);
-    let reading = cad::ReadOptions { reader: env!("CARGO_BIN_EXE_sagitta").into(), ..cad::ReadOptions::default() };
-    let model = cad::Model::read(&m6("egads"), &reading).unwrap();
+    let model = cad::Model::read(&m6("egads"), &cad::ReadOptions::default()).unwrap();
     let [linkage, mesh] = [m6("meshlink.xml"), m6("msh")];
     let linkage = Linkage::read(&linkage, &mesh).unwrap();
     let association = classify(Some(&linkage), &linear, &boundary, &model, 1e-3, &|_| {}).unwrap().association;

@@ -1,8 +1,7 @@
 //! CAD models for mesh curving, and the closest point on them: a stand-in for Project Geode on OpenCASCADE (OCCT).
 //!
-//! * [`Model::read`] reads STEP, IGES and BREP in a child process and hands out plain, numbered, named entities
-//!   in the unit of the file. The child is the calling program itself: its `main` must begin with
-//!   `if first argument == READER_SUBCOMMAND { return serve_reader(path) }`.
+//! * [`Model::read`] reads STEP, IGES and BREP and hands out plain, numbered, named entities in the unit of the file. It reads in this
+//!   process, or has a [`Reader`] do it in a child process that a malformed file may crash.
 //! * [`Group`] is a set of faces, edges and vertices; [`Group::closest`] gives the [`Foot`] of a point on it, trims respected, and says
 //!   whether it is proven to be the closest point; [`Group::closest_batch`] does so for many, in parallel.
 //! * [`Model::evaluate`] gives derivatives, normals and curvatures; [`Model::resolve`] turns references of linkage files into entities.
@@ -40,6 +39,6 @@ pub use {
     model::health::{Health, TrimFault},
     model::reference::ReferenceError,
     model::{Edge, Face, Kind, Label, Model, NamedGroup, Sewing, SourceFormat, Unit, Vertex},
-    read::import::{ReadError, ReadOptions},
+    read::import::{ReadError, ReadOptions, Reader},
     read::reader::{READER_SUBCOMMAND, serve_reader},
 };

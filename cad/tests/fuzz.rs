@@ -5,8 +5,8 @@
 
 mod common;
 
-use cad::{FaceId, Group, Model, ReadError, ReadOptions};
-use common::{Random, options};
+use cad::{FaceId, Group, Model, ReadError, Reader};
+use common::{Random, by, reader};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -81,7 +81,7 @@ fn mutate(text: &mut Vec<u8>, random: &mut Random) {
 /// What came of one file; panics where that is no clear answer.
 fn outcome(path: &Path, timeout: Duration) -> &'static str {
     let start = Instant::now();
-    let result = Model::read(path, &ReadOptions { timeout, ..options() });
+    let result = Model::read(path, &by(Reader { timeout, ..reader() }));
     let took = start.elapsed();
     assert!(took < LIMIT, "{}: {took:?}", path.display());
     match result {

@@ -74,7 +74,7 @@ fn all_kinds_against_occt_and_samples() {
     for name in ["kinds.brep", "plate.brep"] {
         let model = shape(name);
         let path = common::shape_path(name);
-        let import = sys::read_file(path.to_str().unwrap(), sys::Format::Brep, 1.0).unwrap();
+        let import = sys::read_file(path.to_str().unwrap(), sys::Format::Brep, 1.0, false).unwrap();
         let mut random = Random(41);
         for face in model.faces() {
             let group = Group::of_faces(&model, &[face.id]).unwrap();

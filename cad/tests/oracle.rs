@@ -176,7 +176,7 @@ fn file(path: &Path, count: usize, total: &mut Tally) -> usize {
         SourceFormat::Iges => sys::Format::Iges,
         SourceFormat::Brep => sys::Format::Brep,
     };
-    let import = sys::read_file(path.to_str().unwrap(), format, 1.0).unwrap();
+    let import = sys::read_file(path.to_str().unwrap(), format, 1.0, false).unwrap();
     let faces: Vec<FaceId> = model.faces().iter().map(|face| face.id).collect();
     let stride = faces.len().div_ceil(FACES).max(1);
     // OCCT sees no hole that is written a period away

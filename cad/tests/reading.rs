@@ -3,8 +3,8 @@
 
 mod common;
 
-use cad::{EdgeId, EntityId, FaceId, Kind, Model, ReadError, SourceFormat};
-use common::{fixture, options};
+use cad::{EdgeId, EntityId, FaceId, Group, Kind, Model, ReadError, ReadOptions, Reader, SourceFormat};
+use common::{by, fixture, options, reader};
 use std::os::unix::fs::PermissionsExt;
 use std::time::Duration;
 
@@ -90,14 +90,14 @@ fn names_that_several_have_are_ready_groups() {
 fn scale_moves_coordinates_and_tolerances_but_not_the_unit() {
     for name in ["weeble/weeble.step", "weeble/weeble.igs"] {
         let plain = fixture(name);
-        let scaled = Model::read(&common::path(name), &cad::ReadOptions { scale: 0.001, ..options() }).unwrap();
+        let scaled = Model::read(&common::path(name), &ReadOptions { scale: 0.001, ..options() }).unwrap();
         assert_eq!(plain.unit(), scaled.unit());
         assert!((scaled.diagonal() / plain.diagonal() - 0.001).abs() < 1e-12, "{name}");
         for (a, b) in plain.faces().iter().zip(scaled.faces()) {
             assert!((b.tolerance / a.tolerance - 0.001).abs() < 1e-9 && a.label == b.label, "{name} {}", a.id);
         }
         for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            let error = Model::read(&common::path(name), &cad::ReadOptions { scale, ..options() });
+            let error = Model::read(&common::path(name), &ReadOptions { scale, ..options() });
             assert!(matches!(error, Err(ReadError::Scale { .. })), "{scale}");
         }
     }
@@ -152,16 +152,48 @@ fn bad_files_get_errors() {
     assert!(matches!(Model::read(&dir.path().join("absent.step"), &options()), Err(ReadError::Open { .. })));
 }
 
+/// Without a reader no child is started: the same model, also when several threads read at once, and the same words where it is refused.
+#[test]
+fn this_process_reads_what_the_child_does() {
+    let names = ["weeble/weeble.step", "weeble/weeble.igs", "wing_sharp/wing_sharp.step"];
+    let feet = |model: &Model| {
+        let all: Vec<FaceId> = model.faces().iter().map(|face| face.id).collect();
+        let group = Group::of_faces(model, &all).unwrap();
+        let middles: Vec<_> = model.faces().iter().map(|face| face.bounds.center()).collect();
+        group.closest_batch(&middles, &mut [])
+    };
+    std::thread::scope(|scope| {
+        for name in names {
+            scope.spawn(move || {
+                let path = common::path(name);
+                let [here, there] = [ReadOptions::default(), options()]
+                    .map(|options| Model::read(&path, &ReadOptions { scale: 0.25, ..options }).unwrap());
+                assert_eq!(format!("{:?}", here.faces()), format!("{:?}", there.faces()), "{name}");
+                assert_eq!(format!("{:?}", here.edges()), format!("{:?}", there.edges()), "{name}");
+                assert_eq!(format!("{:?}", here.vertices()), format!("{:?}", there.vertices()), "{name}");
+                assert_eq!((here.unit(), here.groups(), here.losses()), (there.unit(), there.groups(), there.losses()));
+                assert_eq!(feet(&here), feet(&there), "{name}");
+            });
+        }
+    });
+    let dir = tempfile::tempdir().unwrap();
+    let cut = dir.path().join("cut.step");
+    let text = std::fs::read(common::path("weeble/weeble.step")).unwrap();
+    std::fs::write(&cut, &text[..text.len() / 2]).unwrap();
+    let [here, there] = [ReadOptions::default(), options()].map(|options| Model::read(&cut, &options).unwrap_err());
+    assert_eq!(here.to_string(), there.to_string());
+}
+
 #[test]
 fn crash_and_hang_of_the_child_are_errors() {
     let path = common::path("weeble/weeble.step");
-    let crashing = cad::ReadOptions { reader: "/bin/false".into(), ..options() };
+    let crashing = by(Reader::new("/bin/false"));
     assert!(matches!(Model::read(&path, &crashing), Err(ReadError::Crashed { .. })));
-    let absent = cad::ReadOptions { reader: "/nowhere/reader".into(), ..options() };
+    let absent = by(Reader::new("/nowhere/reader"));
     assert!(matches!(Model::read(&path, &absent), Err(ReadError::Reader { .. })));
-    let hasty = cad::ReadOptions { timeout: Duration::ZERO, ..options() };
+    let hasty = by(Reader { timeout: Duration::ZERO, ..reader() });
     assert!(matches!(Model::read(&path, &hasty), Err(ReadError::TimedOut { .. })));
-    let poor = cad::ReadOptions { memory_limit: 40 << 20, ..options() };
+    let poor = by(Reader { memory_limit: 40 << 20, ..reader() });
     assert!(Model::read(&path, &poor).is_err());
 }
 
@@ -189,7 +221,7 @@ fn a_hang_names_the_suspects() {
     let reader = dir.path().join("reader");
     std::fs::write(&reader, "#!/bin/sh\necho 'sagitta-warning step:#15: malformed' >&2\nexec sleep 60\n").unwrap();
     std::fs::set_permissions(&reader, std::fs::Permissions::from_mode(0o755)).unwrap();
-    let hanging = cad::ReadOptions { reader, timeout: Duration::from_secs(2), ..options() };
+    let hanging = by(Reader { timeout: Duration::from_secs(2), ..Reader::new(reader) });
     let error = Model::read(&common::path("weeble/weeble.step"), &hanging).unwrap_err();
     assert!(matches!(error, ReadError::TimedOut { .. }), "{error}");
     assert!(error.to_string().contains("step:#15: malformed"), "{error}");
@@ -243,7 +275,7 @@ fn cyclic_and_self_referring_files_end_in_time() {
         std::fs::write(&path, text).unwrap();
         let start = std::time::Instant::now();
         let limit = Duration::from_secs(5);
-        let outcome = Model::read(&path, &cad::ReadOptions { timeout: limit, ..options() });
+        let outcome = Model::read(&path, &by(Reader { timeout: limit, ..reader() }));
         // the parent assembles what the child did; the machine may be busy
         assert!(start.elapsed() < 3 * limit, "{name}: {:?}", start.elapsed());
         match outcome {

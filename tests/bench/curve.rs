@@ -9,12 +9,6 @@ use sagitta::curve::{Job, JobError, Step};
 use sagitta::element::Order;
 
 fn main() -> ExitCode {
-    let arguments: Vec<String> = std::env::args().collect();
-    if let [_, word, path] = arguments.as_slice()
-        && word == cad::READER_SUBCOMMAND
-    {
-        return cad::serve_reader(path.as_ref());
-    }
     println!("| weeble | seconds | of elevation alone | sweeps | us a node and sweep | min J/Jc |");
     println!("|---|---|---|---|---|---|");
     for order in Order::all().skip(1) {

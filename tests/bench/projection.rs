@@ -6,7 +6,7 @@
 #[path = "../common/iges.rs"]
 mod iges;
 
-use cad::{FaceId, Group, Hint, Kind, Model, READER_SUBCOMMAND, ReadOptions};
+use cad::{FaceId, Group, Hint, Kind, Model, ReadOptions};
 use glam::DVec3;
 use iges::Patch;
 use opencascade_sys as sys;
@@ -136,7 +136,7 @@ fn wrong(distances: impl Iterator<Item = f64>, best: &[f64], diagonal: f64) -> u
 
 fn run(case: &Case) {
     let format = if case.path.extension().is_some_and(|e| e == "igs") { sys::Format::Iges } else { sys::Format::Step };
-    let import = sys::read_file(case.path.to_str().unwrap(), format, 1.0).unwrap();
+    let import = sys::read_file(case.path.to_str().unwrap(), format, 1.0, false).unwrap();
     let model = Model::read(&case.path, &ReadOptions::default()).unwrap();
     let wanted = model.faces().iter().filter(|face| case.kind.is_none_or(|kind| face.kind == kind));
     let faces: Vec<FaceId> = wanted.map(|face| face.id).collect();
@@ -230,11 +230,6 @@ fn weeble() {
 
 fn main() {
     let arguments: Vec<String> = std::env::args().collect();
-    if arguments.get(1).is_some_and(|argument| argument == READER_SUBCOMMAND) {
-        let code = cad::serve_reader(Path::new(&arguments[2]));
-        assert!(code == std::process::ExitCode::SUCCESS);
-        return;
-    }
     let wanted: Vec<&String> = arguments[1..].iter().filter(|a| !a.starts_with("--")).collect();
     let folder = tempfile::tempdir().unwrap();
     for case in cases(folder.path()) {

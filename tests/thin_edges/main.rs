@@ -31,7 +31,7 @@ const ASTRAY: f64 = 0.05;
 const CASES: f64 = 0.5;
 
 fn read(path: &Path) -> Model {
-    Model::read(path, &ReadOptions { reader: env!("CARGO_BIN_EXE_sagitta").into(), ..ReadOptions::default() }).unwrap()
+    Model::read(path, &ReadOptions::default()).unwrap()
 }
 
 /// Both sides of a section, by order.

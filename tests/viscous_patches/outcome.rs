@@ -4,7 +4,6 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use cad::ReadOptions;
 use glam::DVec3;
 use sagitta::curve::{Curved, Job};
 use sagitta::element::Order;
@@ -36,8 +35,7 @@ impl Outcome {
         let patch = Patch::draw(&case);
         let [cad, mesh] = files(&case, folder);
         patch.write(&cad, &mesh);
-        let reading = ReadOptions { reader: env!("CARGO_BIN_EXE_sagitta").into(), ..ReadOptions::default() };
-        let job = Job { reading, ..Job::new(mesh, cad, None, Order::new(case.order).unwrap()) };
+        let job = Job::new(mesh, cad, None, Order::new(case.order).unwrap());
         let start = Instant::now();
         let curved = job.run(&mut ()).unwrap_or_else(|error| panic!("{case}: {error}"));
         Outcome {

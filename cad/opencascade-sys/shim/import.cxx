@@ -134,6 +134,7 @@ struct Source {
   std::vector<Instance> instances;
   std::vector<std::tuple<TopoDS_Shape, std::string, std::string>> groups;
   rust::Vec<rust::String> dropped, warnings;
+  bool announces = false;
 };
 
 void check_status(IFSelect_ReturnStatus status) {
@@ -188,10 +189,10 @@ void read_step_unit(const Handle(StepData_StepModel)& model, STEPControl_Reader&
   if (source.millimetres <= 0) throw std::runtime_error("unknown unit of length: " + source.unit);
 }
 
-// Warns of an entity before it is transferred, on the error stream too: should OCCT crash on it, the parent still learns of it.
+// Warns of an entity before it is transferred. A child does so on the error stream too: should OCCT crash on it, the parent still learns of it.
 void warn(Source& source, const std::string& reference, const std::string& cause) {
   const std::string text = reference + ": " + cause;
-  if (source.warnings.size() < 100) std::cerr << "sagitta-warning " << text << std::endl;
+  if (source.announces && source.warnings.size() < 100) std::cerr << "sagitta-warning " << text << std::endl;
   source.warnings.push_back(lossy(text));
 }
 
@@ -308,11 +309,12 @@ Import::Import(std::unique_ptr<Shape> shape, std::string unit, double scale, rus
 
 rust::Vec<Label> Import::labels() const { return labels_; }
 
-std::unique_ptr<Import> read_file(rust::Str name, Format format, double scale) {
+std::unique_ptr<Import> read_file(rust::Str name, Format format, double scale, bool announce) {
   return guard("reading", [&] {
     be_silent();
     const std::string path(name);
     Source source;
+    source.announces = announce;
     if (format == Format::Step) read_step(path, source);
     else if (format == Format::Iges) read_iges(path, source);
     else read_brep(path, source);

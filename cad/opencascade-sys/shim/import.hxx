@@ -28,6 +28,6 @@ private:
 };
 
 // Coordinates come in the unit of the file times `scale`.
-std::unique_ptr<Import> read_file(rust::Str path, Format format, double scale);
+std::unique_ptr<Import> read_file(rust::Str path, Format format, double scale, bool announce);
 
 } // namespace occt

@@ -151,14 +151,15 @@ mod ffi {
         fn bytes(self: &Shape) -> Result<Vec<u8>>;
         fn shape_from_bytes(bytes: &[u8]) -> Result<UniquePtr<Shape>>;
 
-        /// Coordinates come in the unit of the file times `scale`.
-        fn read_file(path: &str, format: Format, scale: f64) -> Result<UniquePtr<Import>>;
+        /// Coordinates come in the unit of the file times `scale`. Turns OCCT's own messages off for the whole process.
+        /// With `announce`, what [`Import::warnings`] tells is written to standard error as well, before OCCT goes on to use it.
+        fn read_file(path: &str, format: Format, scale: f64, announce: bool) -> Result<UniquePtr<Import>>;
         fn shape(self: &Import) -> &Shape;
         fn unit(self: &Import) -> String;
         fn millimetres_per_unit(self: &Import) -> f64;
         fn labels(self: &Import) -> Vec<Label>;
         fn dropped(self: &Import) -> Vec<String>;
-        /// What OCCT's checks say of entities; written to standard error as well, before OCCT goes on to use them.
+        /// What OCCT's checks say of entities.
         fn warnings(self: &Import) -> Vec<String>;
 
         /// OCCT's own searches on a face, for tests and benchmarks: `found` is u, v, distance; the point of `extrema`.

@@ -1,10 +1,10 @@
-//! Reading a CAD file: in a child process, because malformed files make OCCT crash or hang.
+//! Reading a CAD file: in this process or, as malformed files make OCCT crash or hang, in a child.
 
 use crate::child::{self, ChildError, Limits, Outcome};
 use crate::model::{Model, SourceFormat};
 use crate::read::assemble;
 use crate::read::payload::{self, Answer};
-use crate::read::reader::{READER_SUBCOMMAND, SCALE_VARIABLE};
+use crate::read::reader::{self, READER_SUBCOMMAND, SCALE_VARIABLE};
 use opencascade_sys as sys;
 use std::io;
 use std::os::unix::process::ExitStatusExt;
@@ -13,24 +13,43 @@ use std::process::ExitStatus;
 use std::time::Duration;
 use thiserror::Error;
 
-/// Scale of the model, limits of the reading child, and which program it is.
+/// How a CAD file is read.
 #[derive(Clone, Debug)]
 pub struct ReadOptions {
-    /// Wall time after which the child is ended; default 300 s.
-    pub timeout: Duration,
-    /// Address space of the child in bytes; default 4 GB.
-    pub memory_limit: u64,
-    /// Program that calls [`serve_reader`](crate::serve_reader) when its first argument is [`READER_SUBCOMMAND`]; default this very program.
-    pub reader: PathBuf,
     /// Factor of all coordinates, default 1: the model is handed out in the unit of the file times this (a file in mm with 0.001 comes in m).
     /// Tolerances and boxes follow; [`Model::unit`] still tells the unit of the file.
     pub scale: f64,
+    /// The program that parses the file in a process of its own; default `None`: this process parses it.
+    ///
+    /// Malformed files make OCCT dereference null, run for ever or eat up the memory; without a reader that happens to this process, and
+    /// nothing limits it. Files from outside should be read by a [`Reader`].
+    pub reader: Option<Reader>,
 }
 
 impl Default for ReadOptions {
     fn default() -> Self {
-        let reader = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("/proc/self/exe"));
-        Self { timeout: Duration::from_secs(300), memory_limit: 4 << 30, reader, scale: 1.0 }
+        Self { scale: 1.0, reader: None }
+    }
+}
+
+/// A program that parses CAD files for this one, and what it may use for one file.
+///
+/// It is started as `program __read-cad FILE` and must answer [`READER_SUBCOMMAND`] by calling [`serve_reader`](crate::serve_reader) and
+/// nothing else. That may be the host itself, if its `main` begins so, or the crate's own `cad-reader`.
+#[derive(Clone, Debug)]
+pub struct Reader {
+    /// The program.
+    pub program: PathBuf,
+    /// Wall time after which it is ended; by default 300 s.
+    pub timeout: Duration,
+    /// Address space in bytes; by default 4 GB.
+    pub memory_limit: u64,
+}
+
+impl Reader {
+    /// A program, with the default limits.
+    pub fn new(program: impl Into<PathBuf>) -> Self {
+        Self { program: program.into(), timeout: Duration::from_secs(300), memory_limit: 4 << 30 }
     }
 }
 
@@ -124,7 +143,7 @@ impl Model {
     /// times [`ReadOptions::scale`].
     ///
     /// # Errors
-    /// [`ReadError`]: also when OCCT crashes, hangs or eats up the memory, which happens to the child process only.
+    /// [`ReadError`]: with [`ReadOptions::reader`] also when OCCT crashes, hangs or eats up the memory, which happens to that process only.
     pub fn read(path: &Path, options: &ReadOptions) -> Result<Self, ReadError> {
         let owned = || path.to_path_buf();
         match crate::read::format::detect(path) {
@@ -139,26 +158,34 @@ impl Model {
         if !(options.scale.is_finite() && options.scale > 0.0) {
             return Err(ReadError::Scale { path: owned(), scale: options.scale });
         }
-        let Outcome { bytes, status, warnings } = run(path, options)?;
-        let refused = |cause: String| ReadError::Refused { path: owned(), cause };
-        match payload::read(&bytes) {
-            Some((Answer::Model(description), shape)) => {
-                let shape = sys::shape_from_bytes(shape).map_err(|error| refused(error.to_string()))?;
-                assemble::model(path, &shape, description, options.scale).map_err(refused)
-            }
-            Some((Answer::Failure(cause), _)) if is_memory(&cause) => {
-                Err(ReadError::OutOfMemory { path: owned(), limit: options.memory_limit })
-            }
-            Some((Answer::Failure(cause), _)) if cause.starts_with("no face") => {
-                Err(ReadError::Empty { path: owned() })
-            }
-            Some((Answer::Failure(cause), _)) => Err(refused(cause + &suspects(&warnings))),
-            // Rust's allocator aborts where C++ throws
-            None if status.signal() == Some(6) => {
-                Err(ReadError::OutOfMemory { path: owned(), limit: options.memory_limit })
-            }
-            None => Err(ReadError::Crashed { path: owned(), status, warnings }),
+        match &options.reader {
+            None => reader::read_here(path, options.scale).map_err(|cause| of_cause(path, cause)),
+            Some(reader) => read_by(reader, path, options.scale),
         }
+    }
+}
+
+fn of_cause(path: &Path, cause: String) -> ReadError {
+    let path = path.to_path_buf();
+    if cause.starts_with("no face") { ReadError::Empty { path } } else { ReadError::Refused { path, cause } }
+}
+
+/// What the child made of a file.
+fn read_by(reader: &Reader, path: &Path, scale: f64) -> Result<Model, ReadError> {
+    let owned = || path.to_path_buf();
+    let out_of_memory = || ReadError::OutOfMemory { path: owned(), limit: reader.memory_limit };
+    let Outcome { bytes, status, warnings } = run(reader, path, scale)?;
+    match payload::read(&bytes) {
+        Some((Answer::Model(description), shape)) => {
+            let refused = |cause: String| ReadError::Refused { path: owned(), cause };
+            let shape = sys::shape_from_bytes(shape).map_err(|error| refused(error.to_string()))?;
+            assemble::model(path, &shape, description, scale).map_err(refused)
+        }
+        Some((Answer::Failure(cause), _)) if is_memory(&cause) => Err(out_of_memory()),
+        Some((Answer::Failure(cause), _)) => Err(of_cause(path, cause + &suspects(&warnings))),
+        // Rust's allocator aborts where C++ throws
+        None if status.signal() == Some(6) => Err(out_of_memory()),
+        None => Err(ReadError::Crashed { path: owned(), status, warnings }),
     }
 }
 
@@ -167,15 +194,15 @@ fn is_memory(cause: &str) -> bool {
 }
 
 /// Runs the child to its end or the time limit; gives what it wrote.
-fn run(path: &Path, options: &ReadOptions) -> Result<Outcome, ReadError> {
-    let limits = Limits { timeout: options.timeout, memory: options.memory_limit };
-    let scale = (SCALE_VARIABLE, options.scale.to_string());
-    child::run(&options.reader, READER_SUBCOMMAND, path, &[scale], limits).map_err(|error| match error {
+fn run(reader: &Reader, path: &Path, scale: f64) -> Result<Outcome, ReadError> {
+    let limits = Limits { timeout: reader.timeout, memory: reader.memory_limit };
+    let scale = (SCALE_VARIABLE, scale.to_string());
+    child::run(&reader.program, READER_SUBCOMMAND, path, &[scale], limits).map_err(|error| match error {
         ChildError::TimedOut { warnings } => {
-            ReadError::TimedOut { path: path.to_path_buf(), limit: options.timeout, warnings }
+            ReadError::TimedOut { path: path.to_path_buf(), limit: reader.timeout, warnings }
         }
         ChildError::Run(source) => {
-            ReadError::Reader { path: path.to_path_buf(), reader: options.reader.clone(), source }
+            ReadError::Reader { path: path.to_path_buf(), reader: reader.program.clone(), source }
         }
     })
 }

@@ -7,7 +7,7 @@ use std::io::{self, Write};
 const MAGIC: &[u8; 8] = b"sagitta1";
 
 /// Name and reference of an entity, or of a group that it is a member of.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct RawLabel {
     pub(crate) kind: u8,
     pub(crate) index: u32,
@@ -24,7 +24,7 @@ impl RawLabel {
 }
 
 /// What the file says beside the shape.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Description {
     pub(crate) format: SourceFormat,
     pub(crate) unit_name: String,

@@ -1,4 +1,4 @@
-//! The reading child: the only process in which OCCT parses a file.
+//! Parsing a file with OCCT: in this process, or in a child that rehearses everything and hands the model to its parent.
 
 use crate::child;
 use crate::closest::group::Group;
@@ -15,8 +15,9 @@ use glam::DVec3;
 use opencascade_sys as sys;
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::{Mutex, PoisonError};
 
-/// First argument with which a program must call [`serve_reader`]; the second is the file.
+/// First argument at which a program that serves as [`Reader`](crate::Reader) must call [`serve_reader`]; the second is the file.
 pub const READER_SUBCOMMAND: &str = "__read-cad";
 
 /// Variable in which the parent hands [`ReadOptions::scale`](crate::ReadOptions::scale) to the child.
@@ -27,7 +28,7 @@ pub(crate) const SCALE_VARIABLE: &str = "SAGITTA_READER_SCALE";
 pub fn serve_reader(path: &Path) -> ExitCode {
     child::limit_memory();
     let Some(out) = child::take_stdout() else { return ExitCode::FAILURE };
-    let (answer, shape) = match read(path) {
+    let (answer, shape) = match rehearsed(path) {
         Ok((description, shape)) => (Answer::Model(description), shape),
         Err(cause) => (Answer::Failure(cause), Vec::new()),
     };
@@ -41,7 +42,41 @@ fn scale() -> f64 {
     std::env::var(SCALE_VARIABLE).ok().and_then(|text| text.parse().ok()).unwrap_or(1.0)
 }
 
-fn read(path: &Path) -> Result<(Description, Vec<u8>), String> {
+/// What the parent will need, after all has gone well that it will do with it.
+fn rehearsed(path: &Path) -> Result<(Description, Vec<u8>), String> {
+    let scale = scale();
+    let Parsed { description, shape, bytes } = parse(path, scale, true)?;
+    let model = assemble::model(path, &shape, description.clone(), scale)?;
+    check(&model)?;
+    rehearse(&model);
+    Ok((description, bytes))
+}
+
+/// Readers of OCCT share settings: one at a time.
+static ONE: Mutex<()> = Mutex::new(());
+
+/// Reads a file in this process. What makes OCCT crash ends it.
+///
+/// # Errors
+/// What OCCT or [`check`] said.
+pub(crate) fn read_here(path: &Path, scale: f64) -> Result<Model, String> {
+    let Parsed { description, shape, .. } = {
+        let _one = ONE.lock().unwrap_or_else(PoisonError::into_inner); // it guards no data
+        parse(path, scale, false)?
+    };
+    let model = assemble::model(path, &shape, description, scale)?;
+    check(&model).map(|()| model)
+}
+
+/// What OCCT made of a file.
+struct Parsed {
+    description: Description,
+    /// As it comes out of `bytes`: the same shape whoever read the file.
+    shape: sys::UniquePtr<sys::Shape>,
+    bytes: Vec<u8>,
+}
+
+fn parse(path: &Path, scale: f64, announce: bool) -> Result<Parsed, String> {
     let format = match format::detect(path) {
         Ok(Some(format)) => format,
         Ok(None) => return Err("it is neither STEP nor IGES nor BREP".into()),
@@ -53,14 +88,14 @@ fn read(path: &Path) -> Result<(Description, Vec<u8>), String> {
         SourceFormat::Iges => sys::Format::Iges,
         SourceFormat::Brep => sys::Format::Brep,
     };
-    let import = sys::read_file(name, asked, scale()).map_err(|error| error.to_string())?;
+    let import = sys::read_file(name, asked, scale, announce).map_err(|error| error.to_string())?;
     let label = |label: sys::Label| RawLabel {
         kind: label.kind,
         index: label.index,
         reference: label.reference,
         name: label.name,
     };
-    let description = || Description {
+    let description = Description {
         format,
         unit_name: import.unit(),
         millimetres: import.millimetres_per_unit(),
@@ -68,10 +103,9 @@ fn read(path: &Path) -> Result<(Description, Vec<u8>), String> {
         dropped: import.dropped(),
         warnings: import.warnings(),
     };
-    let shape = import.shape().bytes().map_err(|error| error.to_string())?;
-    let restored = sys::shape_from_bytes(&shape).map_err(|error| error.to_string())?;
-    rehearse(&assemble::model(path, &restored, description(), scale())?)?;
-    Ok((description(), shape))
+    let bytes = import.shape().bytes().map_err(|error| error.to_string())?;
+    let shape = sys::shape_from_bytes(&bytes).map_err(|error| error.to_string())?;
+    Ok(Parsed { description, shape, bytes })
 }
 
 /// The first entity whose points, poles or axes are not finite. What OCCT alone evaluates is not looked at.
@@ -111,8 +145,8 @@ fn curve_is_infinite(curve: &Curve, range: [f64; 2]) -> bool {
     }
 }
 
-/// Does on every entity what the parent's queries do, so that what makes OCCT crash does it here.
-fn rehearse(model: &Model) -> Result<(), String> {
+/// Whether there is something to project on, and all of it is finite.
+fn check(model: &Model) -> Result<(), String> {
     if model.faces().is_empty() && model.edges().is_empty() {
         return Err("no face and no edge came out of it".into());
     }
@@ -121,6 +155,11 @@ fn rehearse(model: &Model) -> Result<(), String> {
         let known = of.map_or_else(String::new, |reference| format!(" ({reference})"));
         return Err(format!("{id}{known} has a coordinate that is not a number, or is infinite"));
     }
+    Ok(())
+}
+
+/// Does on every entity what the parent's queries do, so that what makes OCCT crash does it here.
+fn rehearse(model: &Model) {
     for face in model.faces() {
         let [u, v] = face.parameters;
         for (s, t) in
@@ -142,5 +181,4 @@ fn rehearse(model: &Model) -> Result<(), String> {
             let _ = model.evaluate(edge.id.into(), [t, 0.0]);
         }
     }
-    Ok(())
 }

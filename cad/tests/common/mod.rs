@@ -1,7 +1,7 @@
 //! What the tests share.
 #![allow(dead_code, unreachable_pub)] // each test program uses its part
 
-use cad::{Model, ReadOptions};
+use cad::{Model, ReadOptions, Reader};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 
@@ -9,8 +9,19 @@ pub fn path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../fixtures").join(name)
 }
 
+/// The crate's own reading program.
+pub fn reader() -> Reader {
+    Reader::new(env!("CARGO_BIN_EXE_cad-reader"))
+}
+
+/// Reading by that program.
 pub fn options() -> ReadOptions {
-    ReadOptions { reader: env!("CARGO_BIN_EXE_cad-reader").into(), ..ReadOptions::default() }
+    by(reader())
+}
+
+/// Reading by some program.
+pub fn by(reader: Reader) -> ReadOptions {
+    ReadOptions { reader: Some(reader), ..ReadOptions::default() }
 }
 
 pub fn fixture(name: &str) -> Model {

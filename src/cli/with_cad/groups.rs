@@ -2,12 +2,12 @@
 
 use std::fmt::Write;
 use std::path::PathBuf;
-use std::time::Duration;
 
-use cad::{Aabb, Label, Model, ReadOptions};
+use cad::{Aabb, Label, Model};
 use clap::Args;
 use serde::Serialize;
 
+use super::reading::in_a_child;
 use super::values::positive;
 use crate::cli::exit::DONE;
 use crate::cli::output::{Failure, print};
@@ -68,8 +68,7 @@ struct Ready {
 
 /// Lists the entities and the ready groups of a CAD file.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
-    let timeout = Duration::from_secs_f64(options.cad_timeout);
-    let model = Model::read(&options.cad, &ReadOptions { timeout, ..ReadOptions::default() })?;
+    let model = Model::read(&options.cad, &in_a_child(options.cad_timeout, 1.0))?;
     let listing = listing(&model);
     print(&if options.json { serde_json::to_string_pretty(&listing)? } else { listing.text()? })?;
     Ok(DONE)

@@ -3,17 +3,16 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
-use std::time::Duration;
 
-use cad::{Health, Kind, Model, ReadOptions};
+use cad::{Health, Kind, Model};
 
+use super::reading::in_a_child;
 use crate::cli::info::bounds;
 use crate::cli::output::Failure;
 
 /// What a CAD file holds, in words.
 pub(in crate::cli) fn describe(path: &Path, timeout: f64) -> Result<String, Failure> {
-    let timeout = Duration::from_secs_f64(timeout);
-    let model = Model::read(path, &ReadOptions { timeout, ..ReadOptions::default() })?;
+    let model = Model::read(path, &in_a_child(timeout, 1.0))?;
     let (faces, edges) = (model.faces(), model.edges());
     let unit = model.unit();
     let metres = unit.metres.map_or_else(String::new, |m| format!(" ({m} m)"));

@@ -4,14 +4,15 @@ use std::fs::File;
 use std::io::BufReader;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use cad::{Aabb, EntityId, Foot, Group, Model, ReadOptions};
+use cad::{Aabb, EntityId, Foot, Group, Model};
 use clap::Args;
 use glam::DVec3;
 
 use super::points;
 use super::progress::{INTERVAL, Teller};
+use super::reading::in_a_child;
 use super::values::positive;
 use crate::cli::exit::{DONE, NOT_CERTIFIED};
 use crate::cli::output::{Failure, print, write_json};
@@ -85,9 +86,7 @@ fn project(options: &Options, teller: &Teller) -> Result<(Vec<Foot>, FeetReport)
     teller.say("reading the points".to_owned());
     let xs = read_points(&options.points)?;
     teller.say(format!("{} points; reading the CAD", xs.len()));
-    let timeout = Duration::from_secs_f64(options.cad_timeout);
-    let reading = ReadOptions { timeout, scale: options.cad_scale, ..ReadOptions::default() };
-    let model = Model::read(&options.cad, &reading)?;
+    let model = Model::read(&options.cad, &in_a_child(options.cad_timeout, options.cad_scale))?;
     let references: Vec<String> =
         options.group.iter().flat_map(|list| points::split(list)).map(str::to_owned).collect();
     let entities = entities(&model, &references)?;

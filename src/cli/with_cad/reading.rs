@@ -1,8 +1,9 @@
 //! How the CAD is read: options that several commands share.
 
+use std::path::PathBuf;
 use std::time::Duration;
 
-use cad::ReadOptions;
+use cad::{ReadOptions, Reader};
 use clap::Args;
 
 use super::values::positive;
@@ -34,7 +35,13 @@ impl Reading {
 
     /// What reading needs to know, with the given factor or none yet.
     pub(super) fn options(&self) -> ReadOptions {
-        let timeout = Duration::from_secs_f64(self.cad_timeout);
-        ReadOptions { timeout, scale: self.scale().unwrap_or(1.0), ..ReadOptions::default() }
+        in_a_child(self.cad_timeout, self.scale().unwrap_or(1.0))
     }
+}
+
+/// This very program reads the CAD in a child process, which a malformed file may crash.
+pub(super) fn in_a_child(timeout: f64, scale: f64) -> ReadOptions {
+    let program = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("/proc/self/exe"));
+    let reader = Reader { timeout: Duration::from_secs_f64(timeout), ..Reader::new(program) };
+    ReadOptions { scale, reader: Some(reader) }
 }
