@@ -19,8 +19,7 @@ use sagitta::mesh::{Block, Boundary, EntityKey, Mesh, NodeId};
 
 /// A face of a fixture's CAD, by its index.
 fn surface(case: &str, face: usize) -> Surface {
-    let reading = ReadOptions { reader: env!("CARGO_BIN_EXE_sagitta").into(), ..ReadOptions::default() };
-    let model = Model::read(Path::new(&format!("fixtures/{case}/{case}.step")), &reading).unwrap();
+    let model = Model::read(Path::new(&format!("fixtures/{case}/{case}.step")), &ReadOptions::default()).unwrap();
     let group = Group::of_faces(&model, &[FaceId::new(face)]).unwrap();
     Surface { group, label: format!("face {face}"), plane: None }
 }

@@ -88,7 +88,6 @@ fn falls_back_as_without_interruption() {
     // On the way to P4, P3 comes out inverted and goes back towards P2, which the run that goes on from P3 has not made.
     let curve_p4 = |resume: Option<&Path>| {
         let mut job = Job::new(mesh.clone(), cad.clone(), Some(linkage.clone()), Order::new(4).unwrap());
-        job.reading.reader = env!("CARGO_BIN_EXE_sagitta").into();
         job.settings.smoothing.max_sweeps = SWEEPS;
         job.settings.resume = resume.map(Into::into);
         job.run(&mut Impatient::new(4, 1)).unwrap()

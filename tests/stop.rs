@@ -56,7 +56,7 @@ fn an_interrupt_ends_smoothing() {
 #[test]
 fn a_run_that_was_ended_at_a_lower_order_counts_as_ended() {
     let file = |end: &str| Path::new("fixtures/sphere_shell").join(format!("sphere_shell.{end}"));
-    let mut job = Job::new(file("msh"), file("step"), None, Order::new(3).unwrap());
+    let job = Job::new(file("msh"), file("step"), None, Order::new(3).unwrap());
     let curved = job.run(&mut Impatient::new(2, 1)).unwrap();
     assert!(curved.lower_orders[0].stopped, "{:?}", curved.lower_orders);
     assert!(curved.smoothed.stopped && curved.certificate.holds());

@@ -25,7 +25,7 @@ pub struct Job {
     pub linkage: Option<PathBuf>,
     /// What the CAD is multiplied by; `None` finds the factor between known units that makes it fit.
     pub cad_scale: Option<f64>,
-    /// Limits of the CAD reader.
+    /// How the CAD is read: in this process, or by a reading program.
     pub reading: ReadOptions,
     /// What is asked for.
     pub settings: Settings,
