@@ -1,4 +1,4 @@
-//! The places of single indices in contents: looked up when something is to be told of them, as keeping them would double the memory.
+//! The places of single indices in contents: looked up when something is to be reported of them, as keeping them would double the memory.
 
 use std::io::{self, BufRead};
 

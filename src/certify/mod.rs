@@ -24,6 +24,8 @@ mod product;
 mod random_tests;
 mod real;
 mod rounding;
+#[cfg(test)]
+mod rounding_tests;
 mod scaled;
 mod search;
 mod straight;

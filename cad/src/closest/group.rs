@@ -110,7 +110,7 @@ impl Group {
     }
 
     /// Group of any entities, as [`Group::of_faces`], [`Group::of_edges`] and [`Group::of_vertices`] take them. A foot on an edge or a vertex
-    /// that bounds a face of the group is told as a foot of that face.
+    /// that bounds a face of the group is given as a foot of that face.
     ///
     /// # Errors
     /// [`GroupError`]: no ids, ids that the model lacks, nothing to project on.

@@ -129,7 +129,7 @@ fn open_edge(shape: &sys::Shape, i: usize) -> Result<(Edge, Option<EdgeGeometry>
     Ok((edge, Some(EdgeGeometry { handle, curve, range, tolerance: data.tolerance, leaves: Vec::new() })))
 }
 
-/// Builds the model from a shape and what the child told about it.
+/// Builds the model from a shape and what the child said about it.
 ///
 /// # Errors
 /// What OCCT said and about which entity.
