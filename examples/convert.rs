@@ -8,7 +8,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let to = arguments.next().map_or_else(|| std::env::temp_dir().join("sphere_shell.vtu"), Into::into);
     let mesh = formats::read(from.as_ref())?;
     formats::write(&to, &mesh, &WriteOptions::default())?;
-    mesh.notes.iter().for_each(|note| println!("note: {note}"));
+    mesh.notes().iter().for_each(|note| println!("note: {note}"));
     println!("{from} -> {}", to.display());
     Ok(())
 }

@@ -10,6 +10,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let cad = Model::read("fixtures/weeble/weeble.step".as_ref(), &ReadOptions::default())?;
     let curved = curve(mesh, &cad, None, &Settings::new(Order::new(3)?), &mut ())?;
     assert!(curved.is_certified() && curved.off_cad.is_empty());
-    println!("{} nodes, J/Jc proven >= {:.3}", curved.mesh.points.len(), curved.certificate.relative.lower);
+    println!("{} nodes, J/Jc proven >= {:.3}", curved.mesh.points().len(), curved.certificate.relative.lower);
     Ok(())
 }

@@ -15,7 +15,7 @@ use sagitta::curve::recover::off_cad_faces;
 use sagitta::element::{Cell, Order, lattice};
 use sagitta::formats;
 use sagitta::mesh::elevate::elevate;
-use sagitta::mesh::{Block, Boundary, EntityKey, Mesh, NodeId};
+use sagitta::mesh::{Boundary, EntityKey, Mesh, NodeId, Parts};
 
 /// A face of a fixture's CAD, by its index.
 fn surface(case: &str, face: usize) -> Surface {
@@ -98,7 +98,7 @@ fn both_sides_of_a_periodic_pair_go_back_alike() {
     level.periodic.apply(&mut level.curved);
     let fallback = Fallback { order: Order::LINEAR, positions: level.curved.clone() };
     // A new node of the side that leads, pushed far into the volume, and its image with it.
-    let pairs = &level.mesh().periodic;
+    let pairs = &level.mesh().periodic();
     let &(_, master) = pairs.iter().flat_map(|p| &p.pairs).find(|(_, m)| m.index() >= linear_nodes).unwrap();
     let pushed = level.curved[master.index()] + DVec3::splat(0.4);
     level.curved[master.index()] = pushed;
@@ -130,28 +130,19 @@ fn a_folded_wall_face_of_a_valid_element_is_taken_back() {
     let nodes = |keep: &dyn Fn([u8; 3]) -> bool| -> Vec<NodeId> {
         (0..8).filter(|&n| keep(corners[n])).map(|n| NodeId::new(n).unwrap()).collect()
     };
-    let block = |cell: Cell, tag, nodes| Block {
-        cell,
-        entity: EntityKey::new(cell.dimension() as u8, tag),
-        physical_tags: vec![],
-        tags: vec![tag as u64],
-        nodes,
-    };
     let mut floor = nodes(&|c| c[2] == 0);
     let around = |n: &NodeId| [[0, 0], [1, 0], [1, 1], [0, 1]].iter().position(|c| corners[n.index()][..2] == c[..]);
     floor.sort_by_key(around);
-    let linear = Mesh {
-        points: corners.iter().map(|c| overhang(DVec3::from(c.map(f64::from)))).collect(),
-        node_tags: (1..=8).collect(),
-        node_entities: vec![None; 8],
-        blocks: vec![block(Cell::Quad, 1, floor), block(Cell::Hex, 2, nodes(&|_| true))],
-        ..Mesh::default()
-    };
+    let points = corners.iter().map(|c| overhang(DVec3::from(c.map(f64::from)))).collect();
+    let mut parts = Parts { points, ..Parts::default() };
+    parts.push(Cell::Quad, EntityKey::new(2, 1), &floor);
+    parts.push(Cell::Hex, EntityKey::new(3, 2), &nodes(&|_| true));
+    let linear = Mesh::new(parts).unwrap();
     // The floor of the plate lies below it: there its normals are compared with the CAD's.
     let given = Given::new(&linear, 3, vec![surface("plate", 4)]);
     let mut level = given.level(&linear);
     let unit = lattice(Cell::Hex, given.settings.order).iter().map(|at| DVec3::from(at.map(|x| f64::from(x) / 3.0)));
-    for (node, x) in level.elevated.mesh.blocks[1].nodes.iter().zip(unit) {
+    for (node, x) in level.elevated.mesh.blocks()[1].nodes.iter().zip(unit) {
         level.curved[node.index()] = overhang(x);
     }
     let first = Proof::of(&level);
@@ -178,20 +169,13 @@ fn a_face_that_leans_as_far_as_its_wall_does_not_fold() {
     let unit = |order: Order| {
         lattice(Cell::Triangle, order).iter().map(move |at| DVec3::from(at.map(f64::from)) / order.get() as f64)
     };
-    let block = Block {
-        cell: Cell::Triangle,
-        entity: EntityKey::new(2, 1),
-        physical_tags: vec![],
-        tags: vec![1],
-        nodes: (0..3).map(|n| NodeId::new(n).unwrap()).collect(),
-    };
-    let points: Vec<DVec3> = unit(Order::LINEAR).map(place).collect();
-    let (node_entities, node_tags) = (vec![None; 3], (1..=3).collect());
-    let linear = Mesh { node_tags, node_entities, blocks: vec![block], points, ..Mesh::default() };
+    let mut parts = Parts { points: unit(Order::LINEAR).map(place).collect(), ..Parts::default() };
+    parts.push(Cell::Triangle, EntityKey::new(2, 1), &[0, 1, 2].map(|n| NodeId::new(n).unwrap()));
+    let linear = Mesh::new(parts).unwrap();
     let walls = |surfaces| {
         let given = Given::new(&linear, order.get(), surfaces);
         let mut level = given.level(&linear);
-        for (node, x) in level.elevated.mesh.blocks[0].nodes.iter().zip(unit(order)) {
+        for (node, x) in level.elevated.mesh.blocks()[0].nodes.iter().zip(unit(order)) {
             level.curved[node.index()] = place(x);
         }
         Proof::of(&level).walls

@@ -81,7 +81,7 @@ fn damaged_meshes() {
     let unknown = format!("{head}{}", elements.replacen(" 5 2 ", " 777 2 ", 1));
     assert_ne!(unknown, text);
     place.refuses(Input::mesh(place.write("unknown.msh", unknown)), &["unknown.msh, line ", "element type 777"]);
-    let flat = place.mesh("flat.msh", |mesh| mesh.blocks.retain(|block| block.cell.dimension() < 3));
+    let flat = place.mesh("flat.msh", |parts| parts.blocks.retain(|block| block.cell.dimension() < 3));
     place.refuses(Input::mesh(flat), &["flat.msh", "no volume elements"]);
     let curved = place.dir.path().join("in/p2.msh");
     sagitta(Input::default().arguments(&curved)).expect(0);
@@ -245,8 +245,8 @@ fn linkage_that_refers_to_nothing() {
 fn tags_that_do_not_hold() {
     let place = Place::new();
     // Far field (a cylinder) and a side wall change their numbers.
-    let swapped = place.mesh("swapped.msh", |mesh| {
-        for block in mesh.blocks.iter_mut().filter(|block| block.entity.dimension == 2) {
+    let swapped = place.mesh("swapped.msh", |parts| {
+        for block in parts.blocks.iter_mut().filter(|block| block.entity.dimension == 2) {
             block.entity.tag = match block.entity.tag {
                 2 => 5,
                 5 => 2,
@@ -254,8 +254,8 @@ fn tags_that_do_not_hold() {
             };
         }
     });
-    let strange = place.mesh("strange.msh", |mesh| {
-        mesh.blocks.iter_mut().filter(|block| block.entity.dimension == 2).for_each(|b| b.entity.tag += 100);
+    let strange = place.mesh("strange.msh", |parts| {
+        parts.blocks.iter_mut().filter(|block| block.entity.dimension == 2).for_each(|b| b.entity.tag += 100);
     });
     // The association is found by geometry then, all of it, and the report says so.
     for (mesh, patch) in [(swapped, "farfield surface 2 "), (strange, "surface 105 ")] {
@@ -270,9 +270,9 @@ fn tags_that_do_not_hold() {
         std::fs::remove_file(place.output()).unwrap();
     }
     // Where geometry does not tell either, what is wrong with the tags is told.
-    let lost = place.mesh("lost.msh", |mesh| {
-        mesh.blocks.iter_mut().filter(|block| block.entity.dimension == 2).for_each(|b| b.entity.tag += 100);
-        mesh.points.iter_mut().for_each(|x| *x += glam::DVec3::splat(0.05));
+    let lost = place.mesh("lost.msh", |parts| {
+        parts.blocks.iter_mut().filter(|block| block.entity.dimension == 2).for_each(|b| b.entity.tag += 100);
+        parts.points.iter_mut().for_each(|x| *x += glam::DVec3::splat(0.05));
     });
     place.refuses(Input::mesh(lost), &["lost.msh", "cylinder_bl.step", "no part of the mesh is associated"]);
 }
@@ -281,8 +281,8 @@ fn tags_that_do_not_hold() {
 fn inverted_linear_elements() {
     let place = Place::new();
     let mut turned = Vec::new();
-    let mesh = place.mesh("turned.msh", |mesh| {
-        let (order, blocks) = (mesh.order, &mut mesh.blocks);
+    let mesh = place.mesh("turned.msh", |parts| {
+        let (order, blocks) = (parts.order, &mut parts.blocks);
         let block = blocks.iter_mut().find(|block| block.cell.dimension() == 3).unwrap();
         let stride = block.stride(order);
         assert_eq!(stride, 8, "hexahedra");

@@ -22,7 +22,7 @@ fn sample(name: &str) -> Mesh {
 /// Elements of the cells and the boundary by entity, in the mesh's order.
 fn elements(mesh: &Mesh) -> BTreeMap<(EntityKey, Cell), Vec<NodeId>> {
     let mut all: BTreeMap<_, Vec<NodeId>> = BTreeMap::new();
-    for block in mesh.blocks.iter().filter(|block| block.cell.dimension() >= 2) {
+    for block in mesh.blocks().iter().filter(|block| block.cell.dimension() >= 2) {
         all.entry((block.entity, block.cell)).or_default().extend(&block.nodes);
     }
     all
@@ -30,7 +30,7 @@ fn elements(mesh: &Mesh) -> BTreeMap<(EntityKey, Cell), Vec<NodeId>> {
 
 /// Groups of every entity, by number and name.
 fn groups(mesh: &Mesh) -> BTreeMap<EntityKey, (Vec<i32>, Vec<String>)> {
-    let entities = mesh.blocks.iter().filter(|block| block.cell.dimension() >= 2).map(|block| block.entity);
+    let entities = mesh.blocks().iter().filter(|block| block.cell.dimension() >= 2).map(|block| block.entity);
     entities.map(|key| (key, (mesh.physical_tags_of(key), mesh.names_of(key)))).collect()
 }
 
@@ -59,12 +59,12 @@ fn what_is_written_reads_back_with_its_patches_and_groups() {
         let path = dir.path().join("mesh.cgns");
         formats::write(&path, &mesh, &WriteOptions::default()).unwrap();
         let again = read(&path);
-        assert_eq!((again.order, &again.points), (mesh.order, &mesh.points), "{name}");
+        assert_eq!((again.order(), again.points()), (mesh.order(), mesh.points()), "{name}");
         assert_eq!(elements(&again), elements(&mesh), "{name}: same elements on same entities in same order");
         assert_eq!(groups(&again), groups(&mesh), "{name}: physical tags and names");
-        assert!(again.notes.is_empty(), "{name}: {:?}", again.notes);
+        assert!(again.notes().is_empty(), "{name}: {:?}", again.notes());
         let kinds = |mesh: &Mesh| -> BTreeMap<EntityKey, String> {
-            mesh.conditions.iter().map(|c| (c.entity, c.kind.clone())).collect()
+            mesh.conditions().iter().map(|c| (c.entity, c.kind.clone())).collect()
         };
         for (entity, kind) in kinds(&mesh) {
             assert_eq!(kinds(&again).get(&entity), Some(&kind), "{name}: condition of {entity}");
@@ -88,7 +88,7 @@ fn element_numbers_of_a_cgns_file_stay() {
         let again = read(&path);
         assert_eq!(groups(&again), groups(&mesh), "{name}");
         let tags = |mesh: &Mesh| -> BTreeMap<(EntityKey, Cell), usize> {
-            mesh.blocks.iter().map(|block| ((block.entity, block.cell), block.tags.len())).collect()
+            mesh.blocks().iter().map(|block| ((block.entity, block.cell), block.tags.len())).collect()
         };
         assert_eq!(tags(&again), tags(&mesh), "{name}");
     }
@@ -120,7 +120,7 @@ fn cgnscheck_finds_nothing() {
             text.lines().filter(|line| line.contains("ERROR") || line.contains("WARNING")).collect();
         // A mesh of two volumes has a condition for each, as Gmsh writes it, which CGNS does not know.
         let volumes = mesh
-            .blocks
+            .blocks()
             .iter()
             .filter(|b| b.cell.dimension() == 3)
             .map(|b| b.entity)

@@ -183,7 +183,7 @@ fn other_programs_read_every_kind_of_output() {
     let first = formats::read(&files[0]).unwrap();
     for file in &files[1..4] {
         let other = formats::read(file).unwrap();
-        assert_eq!((&other.points, &other.node_tags), (&first.points, &first.node_tags), "{}", file.display());
+        assert_eq!((other.points(), other.node_tags()), (first.points(), first.node_tags()), "{}", file.display());
     }
     let cells = [0, 1, 2, 3].map(|dimension| first.element_count(dimension));
     assert_eq!(cells[3], 1292 + 1957 + 103 + 8285);
@@ -200,11 +200,11 @@ fn other_programs_read_every_kind_of_output() {
     for file in &files[..4] {
         let gmsh = of(file, "gmsh");
         assert_eq!(sum(&gmsh["elements"]) as usize, cells.iter().sum::<usize>(), "{}: {gmsh}", file.display());
-        assert_eq!(gmsh["nodes"], first.points.len(), "{}", file.display());
+        assert_eq!(gmsh["nodes"], first.points().len(), "{}", file.display());
         assert!((number(&gmsh, "/volume") - number(&reference, "/volume")).abs() < 1e-9, "{gmsh}");
     }
     // VTK has no curved pyramids: each is shown as a hexahedron with 27 points of its own.
-    let vtk_points = first.points.len() + 103 * 27;
+    let vtk_points = first.points().len() + 103 * 27;
     for (file, dimensions) in [(&files[4], 0..=3), (&files[5], 3..=3)] {
         let vtk = of(file, "pyvista");
         assert_eq!(sum(&vtk["elements"]) as usize, cells[dimensions].iter().sum::<usize>(), "{vtk}");
@@ -219,7 +219,7 @@ fn other_programs_read_every_kind_of_output() {
     // meshio refuses VTU 2.2, and MSH 4.1 with entities that are in no physical group, also Gmsh's own.
     for file in &files[2..4] {
         let meshio = of(file, "meshio");
-        assert_eq!(meshio["nodes"], first.points.len(), "{}: {meshio}", file.display());
+        assert_eq!(meshio["nodes"], first.points().len(), "{}: {meshio}", file.display());
         assert_eq!(meshio["elements"]["tetra10"], 8285, "{}: {meshio}", file.display());
     }
 }
@@ -276,8 +276,8 @@ fn progress_goes_to_stderr_in_plain_lines() {
 #[test]
 fn figures_are_those_of_the_mesh_that_is_written() {
     let place = Place::new();
-    let mesh = place.mesh("without_cad.msh", |mesh| {
-        mesh.blocks.iter_mut().filter(|b| b.entity == EntityKey::new(2, 4)).for_each(|b| b.entity.tag = 104);
+    let mesh = place.mesh("without_cad.msh", |parts| {
+        parts.blocks.iter_mut().filter(|b| b.entity == EntityKey::new(2, 4)).for_each(|b| b.entity.tag = 104);
     });
     let report = place.dir.path().join("out/report.json");
     let mut arguments = Input::mesh(&mesh).with(&["--max-sweeps", "0"]).arguments(&place.output());

@@ -40,8 +40,8 @@ fn curved(folder: &Path, layers: &str) -> Curved {
 fn straight_places() -> Vec<DVec3> {
     let elevated =
         elevate(&formats::read(&fixture("wing_sharp", "msh")).unwrap(), Order::new(2).unwrap()).unwrap().mesh;
-    let mut places = vec![DVec3::NAN; 1 + *elevated.node_tags.iter().max().unwrap() as usize];
-    for (tag, point) in elevated.node_tags.iter().zip(&elevated.points) {
+    let mut places = vec![DVec3::NAN; 1 + *elevated.node_tags().iter().max().unwrap() as usize];
+    for (tag, point) in elevated.node_tags().iter().zip(elevated.points()) {
         places[*tag as usize] = *point;
     }
     places
@@ -49,22 +49,22 @@ fn straight_places() -> Vec<DVec3> {
 
 /// Which nodes of every volume element are off their straight places, corners first.
 fn bent(mesh: &Mesh, straight: &[DVec3]) -> Vec<bool> {
-    let off = |n: usize| mesh.points[n] != straight[mesh.node_tags[n] as usize];
-    let elements = mesh.blocks_of(3).flat_map(|(_, block)| block.elements(mesh.order));
+    let off = |n: usize| mesh.points()[n] != straight[mesh.node_tags()[n] as usize];
+    let elements = mesh.blocks_of(3).flat_map(|(_, block)| block.elements(mesh.order()));
     elements.map(|nodes| nodes.iter().any(|n| off(n.index()))).collect()
 }
 
 /// The layer of every volume element, 1 at the wall, counted by common nodes.
 fn layers(mesh: &Mesh, straight: &[DVec3]) -> Vec<usize> {
-    let mut reached = vec![false; mesh.points.len()];
+    let mut reached = vec![false; mesh.points().len()];
     let curved = |names: &[String]| names.iter().any(|name| ["wall", "farfield"].contains(&name.as_str()));
     for (_, block) in mesh.blocks_of(2).filter(|(_, block)| curved(&mesh.names_of(block.entity))) {
-        let off = |n: usize| mesh.points[n].distance(straight[mesh.node_tags[n] as usize]) > 1e-6;
-        for face in block.elements(mesh.order).filter(|face| face.iter().any(|n| off(n.index()))) {
+        let off = |n: usize| mesh.points()[n].distance(straight[mesh.node_tags()[n] as usize]) > 1e-6;
+        for face in block.elements(mesh.order()).filter(|face| face.iter().any(|n| off(n.index()))) {
             face[..block.cell.corner_count()].iter().for_each(|n| reached[n.index()] = true);
         }
     }
-    let elements: Vec<_> = mesh.blocks_of(3).flat_map(|(_, block)| block.elements(mesh.order)).collect();
+    let elements: Vec<_> = mesh.blocks_of(3).flat_map(|(_, block)| block.elements(mesh.order())).collect();
     let mut layers = vec![usize::MAX; elements.len()];
     for layer in 1..200 {
         let touches = |e: &usize| layers[*e] == usize::MAX && elements[*e].iter().any(|n| reached[n.index()]);
@@ -93,7 +93,7 @@ fn elements_beyond_are_straight_and_all_are_valid() {
         let own_bent = bent(&own.mesh, &straight);
         assert!((0..layers.len()).all(|e| !own_bent[e] || layers[e] <= n), "{n} of {reach} layers");
         assert!(count(&own_bent) > 0 && count(&own_bent) < count(&free_bent), "{n} of {reach} layers");
-        assert!(certify::mesh(&own.mesh, &own.mesh.points, None, &Settings::default()).holds());
+        assert!(certify::mesh(&own.mesh, own.mesh.points(), None, &Settings::default()).holds());
         assert_eq!((own.told as usize, own.code), (own_bent.len() - count(&own_bent), code), "{n} of {reach} layers");
     }
     let deep = curved(folder.path(), &(reach + 1).to_string());

@@ -29,7 +29,7 @@ fn faces_that_were_taken_back_come_to_the_cad_again() {
     assert!(sweeps > 80.0, "it did not go through recovery, and shows nothing: {told}");
     assert!(report["off_cad"].as_array().unwrap().is_empty(), "{told}");
     let written = formats::read(&out).unwrap();
-    assert!(certify::mesh(&written, &written.points, None, &Settings::default()).holds());
+    assert!(certify::mesh(&written, written.points(), None, &Settings::default()).holds());
     let c_jac = number(&report, "/smoothing/end/c_jac");
     assert!(c_jac > 0.2, "C_JAC {c_jac}");
 }
@@ -44,7 +44,7 @@ fn where_no_time_is_left_faces_keep_their_curve_of_p2() {
         let curved = job.run(&mut Impatient::new(3, patience)).unwrap();
         assert!(curved.smoothed.stopped && curved.certificate.holds(), "{patience}");
         assert!(
-            certify::mesh(&curved.mesh, &curved.mesh.points, None, &Settings::default()).holds(),
+            certify::mesh(&curved.mesh, curved.mesh.points(), None, &Settings::default()).holds(),
             "{patience}: not the mesh that was proven"
         );
         let off_cad = curved.off_cad;

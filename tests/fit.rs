@@ -25,7 +25,7 @@ const DENSITY: usize = 7;
 /// Largest distance of each curved surface's faces from it.
 fn levels(level: &Level) -> BTreeMap<usize, f64> {
     let Case { boundary, association, .. } = level.case;
-    let order = level.mesh().order;
+    let order = level.mesh().order();
     let mut levels = BTreeMap::new();
     for (f, (face, classification)) in boundary.faces.iter().zip(&association.faces).enumerate() {
         let Classification::Surface(surface) = *classification else { continue };

@@ -43,7 +43,7 @@ fn nodes_where_the_edges_of_a_string_meet_are_held() {
     let linkage = Linkage::read(&linkage, &mesh).unwrap();
     let association = classify(Some(&linkage), &linear, &boundary, &model, 1e-3, &|_| {}).unwrap().association;
     let mut held = 0;
-    for (node, place) in linear.points.iter().enumerate() {
+    for (node, place) in linear.points().iter().enumerate() {
         let around = (0..boundary.edges.len()).filter(|&e| boundary.edges[e].iter().any(|n| n.index() == node));
         let around: Vec<Classification> = around
             .map(|e| association.edges[e])

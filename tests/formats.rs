@@ -9,8 +9,8 @@ use std::process::Command;
 use sagitta::element::{Cell, Order};
 use sagitta::formats::msh::{self, Encoding, Version};
 use sagitta::formats::{self, Field, Support, Values, WriteOptions};
-use sagitta::mesh::Mesh;
 use sagitta::mesh::elevate::elevate;
+use sagitta::mesh::{Mesh, Parts};
 
 const ENCODINGS: [Encoding; 2] = [Encoding::Binary, Encoding::Ascii];
 
@@ -35,10 +35,10 @@ fn msh(version: Version, encoding: Encoding) -> WriteOptions<'static> {
 /// All element numbers and nodes in file order.
 fn elements(mesh: &Mesh) -> Vec<(Cell, u64, Vec<usize>)> {
     let of = |b: &sagitta::mesh::Block| {
-        let nodes = b.elements(mesh.order).map(|nodes| nodes.iter().map(|n| n.index()).collect());
+        let nodes = b.elements(mesh.order()).map(|nodes| nodes.iter().map(|n| n.index()).collect());
         b.tags.iter().zip(nodes).map(|(&tag, nodes)| (b.cell, tag, nodes)).collect::<Vec<_>>()
     };
-    mesh.blocks.iter().flat_map(of).collect()
+    mesh.blocks().iter().flat_map(of).collect()
 }
 
 /// What other programs find in files; `None`, said aloud, where no Python with Gmsh is at hand.
@@ -68,30 +68,32 @@ fn of<'a>(found: &'a serde_json::Value, file: &Path, reader: &str) -> &'a serde_
 #[test]
 fn one_mesh_is_the_same_in_every_version_and_encoding() {
     let [text, bytes] = ["a", "b"].map(|encoding| sample(&format!("hexpyrtet_p1_msh41{encoding}.msh")));
-    assert_eq!(text.physical_names.len(), 3);
+    assert_eq!(text.physical_names().len(), 3);
     // Gmsh writes 16 digits, one less than would tell all numbers apart.
-    assert!(text.points.iter().zip(&bytes.points).all(|(a, b)| a.distance(*b) < 1e-15));
-    let rounded = Mesh { points: text.points.clone(), entities: text.entities.clone(), ..bytes.clone() };
-    assert_eq!(rounded, text);
+    assert!(text.points().iter().zip(bytes.points()).all(|(a, b)| a.distance(*b) < 1e-15));
+    let (points, entities) = (text.points().to_vec(), text.entities().to_vec());
+    let rounded = Parts { points, entities, ..bytes.clone().into_parts() };
+    assert_eq!(Mesh::new(rounded).unwrap(), text);
     for (old, new) in [("hexpyrtet_p1_msh22a.msh", &text), ("hexpyrtet_p1_msh22b.msh", &bytes)] {
         let old = sample(old);
-        assert_eq!(old.points, new.points);
-        assert_eq!(old.node_tags, new.node_tags);
+        assert_eq!(old.points(), new.points());
+        assert_eq!(old.node_tags(), new.node_tags());
         // Version 2.2 has elements sorted by type, and numbered so.
         let unnumbered = |mesh: &Mesh| elements(mesh).into_iter().map(|(cell, _, nodes)| (cell, nodes)).collect();
         let [ours, theirs]: [std::collections::BTreeSet<_>; 2] = [unnumbered(&old), unnumbered(new)];
         assert_eq!(ours, theirs);
-        assert_eq!(old.physical_names, new.physical_names);
+        assert_eq!(old.physical_names(), new.physical_names());
     }
     let parametric = sample("hexpyrtet_p1_msh41b_param.msh");
-    assert_eq!(parametric.node_parameters.len(), 50);
-    assert_eq!(Mesh { node_parameters: Vec::new(), ..parametric }, bytes);
+    assert_eq!(parametric.node_parameters().len(), 50);
+    let bare = Parts { node_parameters: Vec::new(), ..parametric.into_parts() };
+    assert_eq!(Mesh::new(bare).unwrap(), bytes);
 }
 
 #[test]
 fn counts_are_those_of_the_program_that_wrote_them() {
     let counts = |mesh: &Mesh| -> BTreeMap<Cell, usize> {
-        mesh.blocks.iter().fold(BTreeMap::new(), |mut sums, b| {
+        mesh.blocks().iter().fold(BTreeMap::new(), |mut sums, b| {
             *sums.entry(b.cell).or_default() += b.tags.len();
             sums
         })
@@ -105,21 +107,21 @@ fn counts_are_those_of_the_program_that_wrote_them() {
     ] {
         let mesh = sample(file);
         assert_eq!(counts(&mesh), cube, "{file}");
-        assert_eq!((mesh.order.get(), mesh.points.len()), (order, points), "{file}");
+        assert_eq!((mesh.order().get(), mesh.points().len()), (order, points), "{file}");
     }
 }
 
 #[test]
 fn a_partitioned_mesh_is_the_mesh_that_was_partitioned() {
     let (parts, whole) = (sample("partitioned_tet_p1_msh41a_param.msh"), sample("periodic_tet_p1_msh41b.msh"));
-    assert_eq!(parts.entities, whole.entities);
-    assert_eq!(parts.periodic.len(), whole.periodic.len());
+    assert_eq!(parts.entities(), whole.entities());
+    assert_eq!(parts.periodic().len(), whole.periodic().len());
     for dimension in 0..=3 {
         assert_eq!(parts.element_count(dimension), whole.element_count(dimension), "dimension {dimension}");
     }
-    let known = |mesh: &Mesh| mesh.entities.iter().map(|e| e.key).collect::<Vec<_>>();
-    assert!(parts.blocks.iter().all(|b| known(&whole).contains(&b.entity)));
-    assert!(parts.node_entities.iter().all(|e| e.is_some_and(|e| known(&whole).contains(&e))));
+    let known = |mesh: &Mesh| mesh.entities().iter().map(|e| e.key).collect::<Vec<_>>();
+    assert!(parts.blocks().iter().all(|b| known(&whole).contains(&b.entity)));
+    assert!(parts.node_entities().iter().all(|e| e.is_some_and(|e| known(&whole).contains(&e))));
 }
 
 #[test]
@@ -132,10 +134,10 @@ fn what_is_written_reads_back_and_the_same_mesh_makes_the_same_bytes() {
             let path = dir.path().join("a.msh");
             formats::write(&path, &mesh, &msh(Version::V4_1, encoding)).unwrap();
             let again = formats::read(&path).unwrap();
-            if mesh.entities.is_empty() {
+            if mesh.entities().is_empty() {
                 assert_eq!(
-                    (elements(&again), &again.points, &again.node_tags),
-                    (elements(&mesh), &mesh.points, &mesh.node_tags),
+                    (elements(&again), again.points(), again.node_tags()),
+                    (elements(&mesh), mesh.points(), mesh.node_tags()),
                     "{name}"
                 );
             } else {
@@ -147,8 +149,8 @@ fn what_is_written_reads_back_and_the_same_mesh_makes_the_same_bytes() {
             formats::write(&path, &mesh, &msh(Version::V2_2, encoding)).unwrap();
             let old = formats::read(&path).unwrap();
             assert_eq!(elements(&old), elements(&mesh), "{name} 2.2 {encoding:?}");
-            assert_eq!((&old.points, &old.node_tags), (&mesh.points, &mesh.node_tags), "{name} 2.2 {encoding:?}");
-            assert_eq!((&old.periodic, &old.physical_names), (&mesh.periodic, &mesh.physical_names), "{name} 2.2");
+            assert_eq!((old.points(), old.node_tags()), (mesh.points(), mesh.node_tags()), "{name} 2.2 {encoding:?}");
+            assert_eq!((old.periodic(), old.physical_names()), (mesh.periodic(), mesh.physical_names()), "{name} 2.2");
         }
     }
     assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 1, "nothing but the file is left");
@@ -190,8 +192,8 @@ fn other_programs_find_the_same_in_what_is_written() {
 /// The Gmsh numbers and counts that a file of this mesh should hold.
 fn gmsh_counts(mesh: &Mesh) -> serde_json::Value {
     let mut counts = BTreeMap::new();
-    for block in &mesh.blocks {
-        *counts.entry(msh::element_type(block.cell, mesh.order).to_string()).or_insert(0) += block.tags.len();
+    for block in mesh.blocks() {
+        *counts.entry(msh::element_type(block.cell, mesh.order()).to_string()).or_insert(0) += block.tags.len();
     }
     serde_json::to_value(counts).unwrap()
 }
@@ -208,8 +210,9 @@ fn elevated_meshes_are_read_by_other_programs() {
                 let path = dir.path().join(format!("{name}_p{}_{n}.msh", order.get()));
                 formats::write(&path, &mesh, &msh(version, ENCODINGS[n])).unwrap();
                 let again = formats::read(&path).unwrap();
-                let linear_part =
-                    |m: &Mesh| (m.points[..linear.points.len()].to_vec(), m.node_tags[..linear.points.len()].to_vec());
+                let linear_part = |m: &Mesh| {
+                    (m.points()[..linear.points().len()].to_vec(), m.node_tags()[..linear.points().len()].to_vec())
+                };
                 assert_eq!(
                     linear_part(&again),
                     linear_part(&linear),
@@ -226,7 +229,7 @@ fn elevated_meshes_are_read_by_other_programs() {
             let height = Field {
                 name: "height".into(),
                 support: Support::Points,
-                values: Values::Real(mesh.points.iter().map(|x| x.z).collect()),
+                values: Values::Real(mesh.points().iter().map(|x| x.z).collect()),
             };
             let options =
                 WriteOptions { fields: &[quality, height], volume_only: order.get() == 3, ..WriteOptions::default() };
@@ -244,7 +247,7 @@ fn elevated_meshes_are_read_by_other_programs() {
             let vtk = of(&found, &path, "pyvista");
             assert!(close(&vtk["volume"]), "{name}: {vtk}");
             let cells: i64 = vtk["elements"].as_object().unwrap().values().map(|n| n.as_i64().unwrap()).sum();
-            let lower = if mesh.order.get() == 3 { 3 } else { 0 };
+            let lower = if mesh.order().get() == 3 { 3 } else { 0 };
             let expected: usize = (lower..=3).map(|d| mesh.element_count(d)).sum();
             assert_eq!(cells as usize, expected, "{name}");
             let arrays = &vtk["arrays"];
@@ -254,14 +257,15 @@ fn elevated_meshes_are_read_by_other_programs() {
                 "{name}"
             );
             assert!(
-                arrays["height"][0] == serde_json::json!(mesh.points.iter().map(|x| x.z).fold(f64::INFINITY, f64::min))
+                arrays["height"][0]
+                    == serde_json::json!(mesh.points().iter().map(|x| x.z).fold(f64::INFINITY, f64::min))
             );
             assert_eq!(arrays["dimension"][1], 3.0);
             continue;
         }
         let gmsh = of(&found, &path, "gmsh");
         assert_eq!(gmsh["elements"], gmsh_counts(&mesh), "{name}: {gmsh}");
-        assert_eq!(gmsh["nodes"], mesh.points.len(), "{name}");
+        assert_eq!(gmsh["nodes"], mesh.points().len(), "{name}");
         if !gmsh["volume"].is_null() {
             assert!(close(&gmsh["volume"]) && gmsh["smallest_determinant"].as_f64().unwrap() > 0.0, "{name}: {gmsh}");
         }

@@ -108,8 +108,8 @@ fn fuzz(format: &Format, seed: u64) {
         match std::panic::catch_unwind(|| formats::read_with(&path, &options)) {
             Ok(Ok(mesh)) => {
                 read += 1;
-                assert!(mesh.blocks.iter().all(|b| b.nodes.iter().all(|n| n.index() < mesh.points.len())));
-                assert!(mesh.blocks.iter().all(|b| b.nodes.len() == b.tags.len() * b.stride(mesh.order)));
+                assert!(mesh.blocks().iter().all(|b| b.nodes.iter().all(|n| n.index() < mesh.points().len())));
+                assert!(mesh.blocks().iter().all(|b| b.nodes.len() == b.tags.len() * b.stride(mesh.order())));
             }
             Ok(Err(error)) => {
                 refused += 1;

@@ -15,27 +15,29 @@ use sagitta::mesh::{Boundary, EntityKey, Mesh};
 const CASES: [&str; 6] = ["weeble", "weeble_hybrid", "wing_sharp", "sphere_shell", "cylinder_bl", "torus"];
 
 /// The mesh as a generator without CAD numbers writes it: one entity a physical name, no points or lines.
-fn without_tags(mesh: &mut Mesh) {
+fn without_tags(mesh: Mesh) -> Mesh {
     let mut names: BTreeMap<Vec<String>, i32> = BTreeMap::new();
-    let keys: BTreeSet<EntityKey> = mesh.blocks.iter().map(|block| block.entity).collect();
+    let keys: BTreeSet<EntityKey> = mesh.blocks().iter().map(|block| block.entity).collect();
     // Far from any number of a CAD entity.
     let key = |names: &mut BTreeMap<Vec<String>, i32>, key: EntityKey| {
         let count = names.len() as i32;
         EntityKey::new(key.dimension, *names.entry(mesh.names_of(key)).or_insert(9001 + count))
     };
     let new: BTreeMap<EntityKey, EntityKey> = keys.into_iter().map(|old| (old, key(&mut names, old))).collect();
-    mesh.blocks.retain(|block| block.cell.dimension() >= 2);
-    mesh.blocks.iter_mut().for_each(|block| block.entity = new[&block.entity]);
+    let mut parts = mesh.into_parts();
+    parts.blocks.retain(|block| block.cell.dimension() >= 2);
+    parts.blocks.iter_mut().for_each(|block| block.entity = new[&block.entity]);
     let mut seen = BTreeSet::new();
-    mesh.entities.retain_mut(|entity| {
+    parts.entities.retain_mut(|entity| {
         let Some(&key) = new.get(&entity.key).filter(|key| key.dimension >= 2) else { return false };
         entity.key = key;
         entity.boundary.clear();
         seen.insert(key)
     });
-    mesh.node_entities.fill(None);
-    mesh.node_parameters.clear();
-    mesh.periodic.clear();
+    parts.node_entities.fill(None);
+    parts.node_parameters.clear();
+    parts.periodic.clear();
+    Mesh::new(parts).unwrap()
 }
 
 /// Items by their nodes, each with the names of its CAD entities.
@@ -97,7 +99,7 @@ fn compare(case: &Path) -> [usize; 2] {
     let name = case.display();
     let mut mesh = formats::read(&case.with_extension("msh")).unwrap();
     let parts: BTreeSet<EntityKey> = mesh.blocks_of(2).map(|(_, block)| block.entity).collect();
-    without_tags(&mut mesh);
+    mesh = without_tags(mesh);
     let merged: BTreeSet<EntityKey> = mesh.blocks_of(2).map(|(_, block)| block.entity).collect();
     assert!(merged.len() <= parts.len() && merged.iter().all(|key| key.tag > 9000), "{name}");
     let (_dir, output, report) = link(case, &mesh, &[]);
@@ -179,7 +181,7 @@ fn unsewn_iges_is_as_good() {
     for case in CASES {
         let path = fixture(case, "msh").with_extension("");
         let mut mesh = formats::read(&fixture(case, "msh")).unwrap();
-        without_tags(&mut mesh);
+        mesh = without_tags(mesh);
         let (dir, output, report) = link(&path, &mesh, &[]);
         let iges = dir.path().join("iges.xml");
         let [file, cad] = [dir.path().join("mesh.msh"), fixture(case, "igs")];
@@ -212,7 +214,7 @@ fn sheets_by_name_are_used() {
     );
     std::fs::write(&linkage, text).unwrap();
     let mut mesh = formats::read(&fixture("torus", "msh")).unwrap();
-    without_tags(&mut mesh);
+    mesh = without_tags(mesh);
     let file = dir.path().join("torus.msh");
     formats::write(&file, &mesh, &WriteOptions::default()).unwrap();
     let cad = fixture("torus", "step");
@@ -250,7 +252,7 @@ fn a_thin_cambered_plate_goes_to_its_own_side() {
     let boundary = Boundary::new(&mesh);
     let tags: Vec<EntityKey> = boundary.faces.iter().map(|face| face.entity).collect();
     let mut untagged = mesh.clone();
-    without_tags(&mut untagged);
+    untagged = without_tags(untagged);
     let (_dir, output, report) = link(&case, &untagged, &[]);
     assert_eq!(report["undecided"].as_array().unwrap().len(), 0, "{report:#}");
     let own = linkage_schema::read_path(&output).unwrap().accept().unwrap();
@@ -266,7 +268,7 @@ fn a_thin_cambered_plate_goes_to_its_own_side() {
     assert_eq!((edges.len(), points.len()), (lines, corners));
 
     // It is the trap that it candidates to be: the sides are the faces with most elements but those of the box.
-    let at = |n: usize| mesh.points[n];
+    let at = |n: usize| mesh.points()[n];
     let arc = |x: f64, height: f64| {
         let radius = (0.25 + height * height) / (2.0 * height);
         height - radius + (radius * radius - (x - 0.5) * (x - 0.5)).sqrt()
@@ -295,9 +297,9 @@ fn linear_nodes_off_the_cad() {
         (noise >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
     };
     let mut shaken = good.clone();
-    shaken.points.iter_mut().for_each(|x| *x += 1e-6 * glam::DVec3::new(next(), next(), next()));
+    shaken.points_mut().iter_mut().for_each(|x| *x += 1e-6 * glam::DVec3::new(next(), next(), next()));
     for (name, mut mesh, [least, most]) in [("mesh.msh", shaken, [1e-7, 2e-6]), ("mesh.b4.ugrid", good, [1e-9, 1e-6])] {
-        without_tags(&mut mesh);
+        mesh = without_tags(mesh);
         let dir = tempfile::tempdir().unwrap();
         let file = dir.path().join(name);
         match name {
@@ -393,9 +395,9 @@ fn patches_can_be_chosen_and_the_association_shown() {
     let blocks =
         curved.blocks_of(2).filter(|(_, block)| curved.names_of(block.entity).contains(&"farfield".to_owned()));
     for (_, block) in blocks {
-        for nodes in block.elements(curved.order) {
+        for nodes in block.elements(curved.order()) {
             for (node, &[a, b]) in (block.cell.corner_count()..).zip(block.cell.edges()) {
-                let at = |n: usize| curved.points[nodes[n].index()];
+                let at = |n: usize| curved.points()[nodes[n].index()];
                 assert!(at(node).distance(0.5 * (at(usize::from(a)) + at(usize::from(b)))) < 1e-12);
             }
         }

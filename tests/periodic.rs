@@ -35,24 +35,25 @@ fn nodes_of(mesh: &Mesh, name: &str) -> BTreeSet<NodeId> {
 
 /// The farthest of any node of `right` from the nearest image of a node of `left`, share of the box.
 fn apart(mesh: &Mesh, map: impl Fn(DVec3) -> DVec3) -> f64 {
-    let size = Aabb::of_points(mesh.points.iter().copied()).diagonal();
-    let images: Vec<DVec3> = nodes_of(mesh, "left").iter().map(|n| map(mesh.points[n.index()])).collect();
+    let size = Aabb::of_points(mesh.points().iter().copied()).diagonal();
+    let images: Vec<DVec3> = nodes_of(mesh, "left").iter().map(|n| map(mesh.points()[n.index()])).collect();
     let right = nodes_of(mesh, "right");
     assert_eq!(images.len(), right.len());
-    let nearest = |n: &NodeId| images.iter().map(|x| x.distance(mesh.points[n.index()])).fold(f64::INFINITY, f64::min);
+    let nearest =
+        |n: &NodeId| images.iter().map(|x| x.distance(mesh.points()[n.index()])).fold(f64::INFINITY, f64::min);
     right.iter().map(nearest).fold(0.0, f64::max) / size
 }
 
 /// The pairs of the file are images of one another, and all nodes of the patch `right` are in them.
 fn assert_pairs(mesh: &Mesh) {
-    let size = Aabb::of_points(mesh.points.iter().copied()).diagonal();
-    let surfaces: Vec<_> = mesh.periodic.iter().filter(|pair| pair.slave.dimension == 2).collect();
+    let size = Aabb::of_points(mesh.points().iter().copied()).diagonal();
+    let surfaces: Vec<_> = mesh.periodic().iter().filter(|pair| pair.slave.dimension == 2).collect();
     assert_eq!(surfaces.len(), 1);
-    for pair in &mesh.periodic {
+    for pair in mesh.periodic() {
         let map = DMat4::from_cols_slice(&pair.affine).transpose();
         for &(slave, master) in &pair.pairs {
-            let image = map.transform_point3(mesh.points[master.index()]);
-            assert!(image.distance(mesh.points[slave.index()]) <= CONGRUENT * size, "{slave:?} {master:?}");
+            let image = map.transform_point3(mesh.points()[master.index()]);
+            assert!(image.distance(mesh.points()[slave.index()]) <= CONGRUENT * size, "{slave:?} {master:?}");
         }
     }
     let slaves: BTreeSet<NodeId> = surfaces[0].pairs.iter().map(|(slave, _)| *slave).collect();
@@ -101,8 +102,8 @@ fn largest_bend(dir: &Path, case: &str) -> f64 {
     let mesh = formats::read(&output).unwrap();
     let mut largest = 0.0_f64;
     for (_, block) in mesh.blocks_of(2).filter(|(_, block)| mesh.names_of(block.entity).contains(&"left".to_owned())) {
-        for nodes in block.elements(mesh.order) {
-            let at = |n: usize| mesh.points[nodes[n].index()];
+        for nodes in block.elements(mesh.order()) {
+            let at = |n: usize| mesh.points()[nodes[n].index()];
             for (node, &[a, b]) in (block.cell.corner_count()..).zip(block.cell.edges()) {
                 largest = largest.max(at(node).distance(0.5 * (at(usize::from(a)) + at(usize::from(b)))));
             }
@@ -132,7 +133,7 @@ fn wavy_sides_of_a_block_by_the_linkage_file() {
     }
     // Without the linkage file nothing tells that the sides are a pair.
     curve("wave", 3, &[], &output);
-    assert!(formats::read(&output).unwrap().periodic.is_empty());
+    assert!(formats::read(&output).unwrap().periodic().is_empty());
 }
 
 /// `$Periodic` of a mesh file goes over into the linkage file, from which it works as well.
@@ -147,16 +148,17 @@ fn pairs_of_the_mesh_file_survive_in_the_linkage_file() {
         let text = std::fs::read_to_string(&linkage).unwrap();
         assert_eq!(text.matches("<MeshElementLinkage").count(), 1, "{text}");
         sagitta(args!["validate", linkage, "--mesh", mesh, "--cad", cad, "--strict"]).expect(0);
-        let mut unpaired = formats::read(&mesh).unwrap();
-        assert!(!unpaired.periodic.is_empty());
-        unpaired.periodic.clear();
+        let mut parts = formats::read(&mesh).unwrap().into_parts();
+        assert!(!parts.periodic.is_empty());
+        parts.periodic.clear();
+        let unpaired = Mesh::new(parts).unwrap();
         formats::write(&bare, &unpaired, &formats::WriteOptions::default()).unwrap();
         let curve = |more: &[OsString]| {
             let arguments = args!["curve", bare, "--cad", cad, "--order", "3", "-q", "-o", output];
             sagitta(arguments.into_iter().chain(more.iter().cloned())).expect(0);
             formats::read(&output).unwrap()
         };
-        assert!(curve(&[]).periodic.is_empty());
+        assert!(curve(&[]).periodic().is_empty());
         let curved = curve(&args!["--linkage", linkage]);
         assert_pairs(&curved);
         let apart = apart(&curved, turned);

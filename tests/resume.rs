@@ -98,7 +98,7 @@ fn falls_back_as_without_interruption() {
         let p3 = lower.last().unwrap();
         assert!(lower.len() == orders && p3.sweeps > SWEEPS && p3.end.inverted == 0, "{lower:?}");
     }
-    assert!(whole.mesh.points == second.mesh.points, "P4: other places than without interruption");
+    assert!(whole.mesh.points() == second.mesh.points(), "P4: other places than without interruption");
 }
 
 #[test]

@@ -61,7 +61,7 @@ fn read(path: &Path) -> Result<Mesh, formats::Error> {
 }
 
 fn counts(mesh: &Mesh) -> BTreeMap<String, u64> {
-    mesh.blocks.iter().fold(BTreeMap::new(), |mut counts, block| {
+    mesh.blocks().iter().fold(BTreeMap::new(), |mut counts, block| {
         *counts.entry(block.cell.name().to_owned()).or_default() += block.tags.len() as u64;
         counts
     })
@@ -95,7 +95,7 @@ fn compare(file: &str, mesh: &Mesh, theirs: &Value) {
         assert_eq!(counted.get(cell), Some(count), "{file}: {cell}");
     }
     if let Some(nodes) = theirs["nodes"].as_u64() {
-        assert_eq!(mesh.points.len() as u64, nodes, "{file}: nodes");
+        assert_eq!(mesh.points().len() as u64, nodes, "{file}: nodes");
     }
     let (volume, found) = measure(mesh);
     let tolerance = theirs["tolerance"].as_f64().unwrap_or(1e-9);
@@ -106,7 +106,7 @@ fn compare(file: &str, mesh: &Mesh, theirs: &Value) {
     assert!(close(volume, expected, tolerance), "{file}: volume {volume}, theirs {expected}");
     let Some(expected) = theirs["areas"].as_object() else { return };
     // The area of a curved face is no polynomial: quadratures differ.
-    let tolerance = if mesh.order > Order::LINEAR { tolerance.max(1e-7) } else { tolerance };
+    let tolerance = if mesh.order() > Order::LINEAR { tolerance.max(1e-7) } else { tolerance };
     if mesh.element_count(3) == 0 {
         let (ours, theirs) = (found.values().sum::<f64>(), expected[""].as_f64().unwrap());
         assert!(close(ours, theirs, tolerance), "{file}: area {ours}, theirs {theirs}");
@@ -165,13 +165,13 @@ fn prisms_that_are_numbered_the_other_way_round_are_turned_and_it_is_told() {
     for file in ["cylprism_p1.su2", "cylprism_p1.vtk", "cylprism_p1_ascii.vtu"] {
         let mesh = read(&folder().join(file)).unwrap();
         let told = "294 of 294 prism cells were numbered the other way round (negative volume) and were renumbered";
-        assert_eq!(mesh.notes, [told], "{file}");
+        assert_eq!(mesh.notes(), [told], "{file}");
         assert!(
-            sagitta::certify::mesh(&mesh, &mesh.points, None, &sagitta::certify::Settings::default()).holds(),
+            sagitta::certify::mesh(&mesh, mesh.points(), None, &sagitta::certify::Settings::default()).holds(),
             "{file}"
         );
     }
-    assert!(read(&folder().join("cylprism_p1.lb8.ugrid")).unwrap().notes.is_empty());
+    assert!(read(&folder().join("cylprism_p1.lb8.ugrid")).unwrap().notes().is_empty());
 }
 
 #[test]
@@ -191,8 +191,8 @@ fn ugrid_names_come_from_the_mapbc_file() {
     let copy = dir.path().join("mesh.lb8.ugrid");
     std::fs::copy(folder().join("hexpyrtet_p1.lb8.ugrid"), &copy).unwrap();
     let bare = read(&copy).unwrap();
-    assert!(bare.notes.iter().any(|note| note.contains("no .mapbc file")), "{:?}", bare.notes);
-    assert!(bare.physical_names.iter().all(|name| name.dimension == 3) && bare.entities.len() == 11);
+    assert!(bare.notes().iter().any(|note| note.contains("no .mapbc file")), "{:?}", bare.notes());
+    assert!(bare.physical_names().iter().all(|name| name.dimension == 3) && bare.entities().len() == 11);
     // A name that says another kind is not believed, and the kind that fits is told.
     let wrong = dir.path().join("mesh.b8.ugrid");
     std::fs::copy(folder().join("hexpyrtet_p1.lb8.ugrid"), &wrong).unwrap();
@@ -203,9 +203,9 @@ fn ugrid_names_come_from_the_mapbc_file() {
         let plain = dir.path().join("plain.ugrid");
         std::fs::copy(folder().join(format!("hexpyrtet_p1.{kind}.ugrid")), &plain).unwrap();
         let found = read(&plain).unwrap();
-        let far = mesh.points.iter().zip(&found.points).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+        let far = mesh.points().iter().zip(found.points()).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
         assert!(far <= if kind.ends_with('4') { 1e-7 } else { 0.0 }, "{kind}: {far}");
-        assert_eq!(found.blocks, mesh.blocks, "{kind}");
+        assert_eq!(found.blocks(), mesh.blocks(), "{kind}");
     }
 }
 
@@ -214,10 +214,10 @@ fn cgns_conditions_are_found_by_list_range_vertices_and_family() {
     for file in ["mixed_bc.cgns", "mixed_bc_pre34_nooffset.cgns"] {
         let mesh = read(&folder().join(file)).unwrap();
         let kinds: BTreeMap<&str, (&str, usize)> = mesh
-            .conditions
+            .conditions()
             .iter()
             .map(|condition| {
-                let faces = mesh.blocks.iter().filter(|block| block.entity == condition.entity);
+                let faces = mesh.blocks().iter().filter(|block| block.entity == condition.entity);
                 (condition.name.as_str(), (condition.kind.as_str(), faces.map(|block| block.tags.len()).sum()))
             })
             .collect();
@@ -225,8 +225,8 @@ fn cgns_conditions_are_found_by_list_range_vertices_and_family() {
         assert_eq!(kinds["far_range"], ("BCFarfield", 3), "{file}");
         assert_eq!(kinds["direct_elementrange"], ("BCSymmetryPlane", 4), "{file}");
         // Its one face belongs to the list.
-        assert!(mesh.notes.iter().any(|note| note.contains("vertex_list: has no face")), "{:?}", mesh.notes);
-        let mut names: Vec<&str> = mesh.physical_names.iter().map(|name| name.name.as_str()).collect();
+        assert!(mesh.notes().iter().any(|note| note.contains("vertex_list: has no face")), "{:?}", mesh.notes());
+        let mut names: Vec<&str> = mesh.physical_names().iter().map(|name| name.name.as_str()).collect();
         names.sort_unstable();
         assert_eq!(names, ["Far", "Wall", "direct_elementrange", "fluid"], "{file}");
     }
@@ -257,20 +257,20 @@ fn plot3d_is_read_in_every_way_it_is_written() {
                     read(&path).unwrap_or_else(|e| panic!("{several} {text} {records} {short} {big} {blanks}: {e}"));
                 let (volume, areas) = measure(&mesh);
                 assert!((volume - used.len() as f64).abs() < 1e-12, "{volume}");
-                assert_eq!(mesh.points.len(), if several { 12 } else { 8 });
+                assert_eq!(mesh.points().len(), if several { 12 } else { 8 });
                 assert_eq!(areas.len(), if several { 10 } else { 6 }, "the common side is no patch");
-                assert_eq!(mesh.zones.len(), if several { 2 } else { 0 });
+                assert_eq!(mesh.zones().len(), if several { 2 } else { 0 });
                 ways += 1;
             }
         }
     }
     assert_eq!(ways, 48);
     let mesh = read(&dir.path().join("grid.x")).unwrap();
-    assert_eq!(mesh.zones[1].name, "/Base/blk-2");
-    let far = mesh.points[mesh.zones[1].nodes[7].index()];
+    assert_eq!(mesh.zones()[1].name, "/Base/blk-2");
+    let far = mesh.points()[mesh.zones()[1].nodes[7].index()];
     assert_eq!(far.to_array(), [2.0, 1.0, 1.0], "the last point of the second block");
     assert_eq!(mesh.names_of(EntityKey::new(2, 1)), ["blk-1_imin"]);
-    assert_eq!(mesh.order, Order::LINEAR);
+    assert_eq!(mesh.order(), Order::LINEAR);
 }
 
 fn grid_text(blocks: &[Vec<[f64; 3]>], several: bool, blanks: bool) -> Vec<u8> {
@@ -313,10 +313,10 @@ fn grid_bytes(blocks: &[Vec<[f64; 3]>], several: bool, records: bool, short: boo
 #[test]
 fn zones_are_joined_and_conditions_on_vertices_find_their_faces() {
     let mesh = read(&folder().join("two_zones.cgns")).unwrap();
-    assert_eq!((mesh.points.len(), mesh.element_count(3), mesh.element_count(2)), (12, 2, 2));
-    let names: Vec<&str> = mesh.zones.iter().map(|zone| zone.name.as_str()).collect();
+    assert_eq!((mesh.points().len(), mesh.element_count(3), mesh.element_count(2)), (12, 2, 2));
+    let names: Vec<&str> = mesh.zones().iter().map(|zone| zone.name.as_str()).collect();
     assert_eq!(names, ["/Base/left", "/Base/right"]);
-    let [left, right] = [0, 1].map(|n| &mesh.zones[n].nodes);
+    let [left, right] = [0, 1].map(|n| &mesh.zones()[n].nodes);
     assert_eq!((left.len(), right.len()), (8, 8));
     assert_eq!([left[1], left[2], left[6], left[5]], [right[0], right[3], right[7], right[4]], "the common side");
     let (volume, areas) = measure(&mesh);
@@ -325,13 +325,13 @@ fn zones_are_joined_and_conditions_on_vertices_find_their_faces() {
         "{volume} {areas:?}"
     );
     let sides: BTreeMap<&str, f64> = mesh
-        .conditions
+        .conditions()
         .iter()
         .map(|condition| {
-            let block = mesh.blocks.iter().find(|block| block.entity == condition.entity).unwrap();
+            let block = mesh.blocks().iter().find(|block| block.entity == condition.entity).unwrap();
             (condition.kind.as_str(), mesh.points_of(&block.nodes).map(|x| x.x).sum::<f64>() / 4.0)
         })
         .collect();
     assert!(sides["BCInflow"] == 0.0 && (sides["BCOutflow"] - 2.0).abs() < 1e-11, "{sides:?}");
-    assert!(mesh.notes.is_empty(), "{:?}", mesh.notes);
+    assert!(mesh.notes().is_empty(), "{:?}", mesh.notes());
 }

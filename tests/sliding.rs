@@ -46,7 +46,7 @@ fn wall_nodes(more: &[&str]) -> Vec<[DVec3; 2]> {
     let [mesh, cad] = ["msh", "step"].map(|extension| fixture("dish", extension));
     let options = args!["curve", mesh, "--cad", cad, "--quiet", "--order", "2", "-o", out];
     sagitta(options.into_iter().chain(more.iter().map(Into::into))).expect(0);
-    let [before, after] = [mesh, out].map(|path| formats::read(&path).unwrap().points);
+    let [before, after] = [mesh, out].map(|path| formats::read(&path).unwrap().into_parts().points);
     let wall = before.len() / (LAYERS + 1);
     before.into_iter().zip(after).take(wall).map(|(before, after)| [before, after]).collect()
 }

@@ -15,7 +15,7 @@ use common::{fixture, json, sagitta};
 use glam::DVec3;
 use sagitta::element::{Cell, Order, basis};
 use sagitta::formats::{self, WriteOptions};
-use sagitta::mesh::{Block, EntityKey, Mesh, NodeId};
+use sagitta::mesh::{EntityKey, Mesh, NodeId, Parts};
 
 /// Faces of `sphere_shell.step`, by number.
 const FAR: i32 = 1;
@@ -79,17 +79,10 @@ fn shell(n: usize) -> Mesh {
     let octant = Octant::new(n);
     let directions = octant.directions();
     let top = directions.len();
-    let mut blocks: Vec<Block> = Vec::new();
-    let mut count = 0;
+    let mut parts = Parts::default();
     let mut push = |cell: Cell, dimension: u8, tag: i32, nodes: &[usize]| {
-        let entity = EntityKey::new(dimension, tag);
-        let place = blocks.iter().position(|b| b.entity == entity).unwrap_or_else(|| {
-            blocks.push(Block { cell, entity, physical_tags: Vec::new(), tags: Vec::new(), nodes: Vec::new() });
-            blocks.len() - 1
-        });
-        count += 1;
-        blocks[place].tags.push(count);
-        blocks[place].nodes.extend(nodes.iter().map(|&node| NodeId::new(node).unwrap()));
+        let nodes: Vec<NodeId> = nodes.iter().map(|&node| NodeId::new(node).unwrap()).collect();
+        parts.push(cell, EntityKey::new(dimension, tag), &nodes);
     };
     for [a, b, c] in octant.triangles() {
         push(Cell::Triangle, 2, WALL, &[a, b, c]);
@@ -99,31 +92,24 @@ fn shell(n: usize) -> Mesh {
     for (plane, [a, b]) in octant.sides() {
         push(Cell::Quad, 2, plane, &[a, b, top + b, top + a]);
     }
-    let points: Vec<DVec3> = directions.iter().copied().chain(directions.iter().map(|d| 2.0 * d)).collect();
-    let count = points.len();
-    Mesh {
-        points,
-        node_tags: (1..=count as u64).collect(),
-        node_entities: vec![None; count],
-        blocks,
-        ..Mesh::default()
-    }
+    let points = directions.iter().copied().chain(directions.iter().map(|d| 2.0 * d)).collect();
+    Mesh::new(Parts { points, ..parts }).unwrap()
 }
 
 /// The wall's largest distance to the unit sphere, at dense points of its polynomials.
 fn off_the_sphere(mesh: &Mesh) -> f64 {
-    let n = 5 * mesh.order.get();
+    let n = 5 * mesh.order().get();
     let at = |k: usize| k as f64 / n as f64;
     let samples: Vec<Vec<f64>> = (0..=n)
         .flat_map(|j| (0..=n - j).map(move |i| (i, j)))
         .map(|(i, j)| {
             let chart = sagitta::element::bernstein::chart(Cell::Triangle, [at(i), at(j), 0.0]);
-            basis::values(Cell::Triangle, mesh.order, chart)
+            basis::values(Cell::Triangle, mesh.order(), chart)
         })
         .collect();
     let (mut farthest, mut faces) = (0.0_f64, 0);
     for (_, block) in mesh.blocks_of(2).filter(|(_, b)| b.entity.tag == WALL) {
-        for nodes in block.elements(mesh.order) {
+        for nodes in block.elements(mesh.order()) {
             faces += 1;
             for values in &samples {
                 let x: DVec3 = mesh.points_of(nodes).zip(values).map(|(x, &v)| x * v).sum();
@@ -146,7 +132,7 @@ fn distance(dir: &Path, cad: &str, n: usize, order: Order) -> f64 {
     let told = json(&report);
     assert_eq!(told["faces_without_cad"], 0, "{:#}", told["notes"]);
     let mesh = formats::read(&curved).unwrap();
-    assert_eq!(mesh.order, order);
+    assert_eq!(mesh.order(), order);
     off_the_sphere(&mesh)
 }
 

@@ -22,8 +22,8 @@ fn curve(out: &Path, more: &[&str]) -> Command {
 
 fn assert_valid(out: &Path) {
     let mesh = formats::read(out).unwrap();
-    assert_eq!(mesh.order.get(), 4);
-    assert!(certify::mesh(&mesh, &mesh.points, None, &Settings::default()).holds());
+    assert_eq!(mesh.order().get(), 4);
+    assert!(certify::mesh(&mesh, mesh.points(), None, &Settings::default()).holds());
 }
 
 #[test]

@@ -18,7 +18,7 @@ use serde_json::Value;
 const OUTER: (f64, i32) = (5.0, 2);
 
 fn scaled(place: &Place, factor: f64) -> PathBuf {
-    place.mesh(&format!("scaled_{factor}.msh"), |mesh| mesh.points.iter_mut().for_each(|x| *x *= factor))
+    place.mesh(&format!("scaled_{factor}.msh"), |parts| parts.points.iter_mut().for_each(|x| *x *= factor))
 }
 
 /// Curves; the report and the mesh.
@@ -126,7 +126,7 @@ fn a_factor_between_no_two_units_is_not_guessed() {
 #[test]
 fn another_place_is_told_with_its_distance() {
     let place = Place::new();
-    let shifted = |by: DVec3| place.mesh("shifted.msh", |mesh| mesh.points.iter_mut().for_each(|x| *x += by));
+    let shifted = |by: DVec3| place.mesh("shifted.msh", |parts| parts.points.iter_mut().for_each(|x| *x += by));
     for scale in ["1", "auto"] {
         let input = Input::mesh(shifted(DVec3::new(300.0, 400.0, 0.0))).with(&["--cad-scale", scale]);
         place.refuses(input, &["shifted.msh", "cylinder_bl.step", "500.000000 apart"]);
@@ -144,23 +144,23 @@ fn wall_node(mesh: &Mesh) -> (usize, DVec3) {
         blocks.flat_map(|(_, b)| b.nodes.iter().map(|n| n.index())).collect::<std::collections::BTreeSet<_>>()
     };
     let node = *nodes_of(true).difference(&nodes_of(false)).next().unwrap();
-    let x = mesh.points[node];
+    let x = mesh.points()[node];
     assert!((x.truncate().length() - OUTER.0).abs() < 1e-9, "{x}");
     (node, DVec3::new(x.x, x.y, 0.0).normalize())
 }
 
 fn moved(place: &Place, by: f64) -> (PathBuf, u64, DVec3) {
     let mut known = (0, DVec3::ZERO);
-    let path = place.mesh("moved.msh", |mesh| {
-        let (node, outward) = wall_node(mesh);
-        mesh.points[node] += outward * by;
-        known = (mesh.node_tags[node], mesh.points[node]);
+    let path = place.mesh("moved.msh", |parts| {
+        let (node, outward) = wall_node(&Mesh::new(parts.clone()).unwrap());
+        parts.points[node] += outward * by;
+        known = (parts.node_tags[node], parts.points[node]);
     });
     (path, known.0, known.1)
 }
 
 fn place_of(mesh: &Mesh, tag: u64) -> DVec3 {
-    mesh.points[mesh.node_tags.iter().position(|&t| t == tag).unwrap()]
+    mesh.points()[mesh.node_tags().iter().position(|&t| t == tag).unwrap()]
 }
 
 fn patch(report: &Value, tag: i32) -> &Value {
@@ -207,7 +207,7 @@ fn a_node_slightly_off_is_projected_or_frozen() {
 /// Every linear node is where it was, to the last bit.
 #[track_caller]
 fn unmoved(linear: &Mesh, curved: &Mesh, what: &str) {
-    for (tag, x) in linear.node_tags.iter().zip(&linear.points) {
+    for (tag, x) in linear.node_tags().iter().zip(linear.points()) {
         assert_eq!(place_of(curved, *tag), *x, "{what}: node {tag}");
     }
 }
@@ -221,7 +221,7 @@ fn linear_nodes_inside_the_mesh_do_move_unless_frozen() {
         let input = Input { mesh: fixture("torus", "msh"), cad: fixture("torus", "step"), ..Input::default() };
         curved(&place, input.with(more)).1
     };
-    let moves = |mesh: &Mesh| (0..linear.points.len()).filter(|&n| mesh.points[n] != linear.points[n]).count();
+    let moves = |mesh: &Mesh| (0..linear.points().len()).filter(|&n| mesh.points()[n] != linear.points()[n]).count();
     assert!(moves(&torus(&[])) > 0);
     unmoved(&linear, &torus(&["--freeze-linear"]), "torus");
 }

@@ -30,7 +30,7 @@ pub fn associate(
         return Err(AssociateError::Nothing { surfaces: candidates.sheets.len(), faces: model.faces().len() });
     }
     check_boxes(mesh, boundary, model, candidates)?;
-    let limit = max_offset * Aabb::of_points(mesh.points.iter().copied()).diagonal();
+    let limit = max_offset * Aabb::of_points(mesh.points().iter().copied()).diagonal();
     let slack = ON_ENTITY * model.diagonal();
     let mut binder = Binder {
         mesh,
@@ -123,7 +123,7 @@ impl Binder<'_> {
     /// The first CAD face that all the nodes lie on.
     fn face_that_holds(&self, nodes: &BTreeSet<NodeId>) -> Option<FaceId> {
         let on = |group: &Group, n: &NodeId| {
-            group.closest(self.mesh.points[n.index()], None).distance <= ON_ENTITY * self.model.diagonal()
+            group.closest(self.mesh.points()[n.index()], None).distance <= ON_ENTITY * self.model.diagonal()
         };
         let holds =
             |id: &FaceId| Group::of_faces(self.model, &[*id]).is_ok_and(|group| nodes.iter().all(|n| on(&group, n)));
@@ -139,7 +139,7 @@ impl Binder<'_> {
         nodes: &BTreeSet<NodeId>,
     ) -> Result<f64, AssociateError> {
         let nodes: Vec<NodeId> = nodes.iter().copied().collect();
-        let places: Vec<DVec3> = nodes.iter().map(|n| self.mesh.points[n.index()]).collect();
+        let places: Vec<DVec3> = nodes.iter().map(|n| self.mesh.points()[n.index()]).collect();
         let feet = group.closest_batch(&places, &mut []);
         let off = feet.iter().filter(|f| f.distance > self.limit).count();
         let worst = (0..feet.len()).max_by(|&a, &b| feet[a].distance.total_cmp(&feet[b].distance));
@@ -150,7 +150,7 @@ impl Binder<'_> {
                 entities: names(entities),
                 count: off,
                 of: nodes.len(),
-                node: self.mesh.node_tags[nodes[worst].index()],
+                node: self.mesh.node_tags()[nodes[worst].index()],
                 at: places[worst],
                 distance: feet[worst].distance,
                 limit: self.limit,
@@ -191,7 +191,7 @@ impl Binder<'_> {
     /// An unlinked patch keeps its plane, if it has one, or its straight faces.
     fn unlinked(&mut self, patch: &[usize]) {
         let nodes: BTreeSet<NodeId> = patch.iter().flat_map(|&f| self.boundary.corners[f].iter().copied()).collect();
-        let places: Vec<DVec3> = nodes.iter().map(|n| self.mesh.points[n.index()]).collect();
+        let places: Vec<DVec3> = nodes.iter().map(|n| self.mesh.points()[n.index()]).collect();
         let entity = self.boundary.faces[patch[0]].entity;
         let what = format!("{entity}: {} faces are not associated with the CAD", patch.len());
         let classification = match plane_through(&places, self.slack) {
@@ -240,7 +240,7 @@ impl Binder<'_> {
         if !ids.is_empty() {
             let nodes: BTreeSet<NodeId> = string.items.iter().flatten().copied().collect();
             if let Ok(group) = Group::of_edges(self.model, &ids) {
-                let places: Vec<DVec3> = nodes.iter().map(|n| self.mesh.points[n.index()]).collect();
+                let places: Vec<DVec3> = nodes.iter().map(|n| self.mesh.points()[n.index()]).collect();
                 let farthest = group.closest_batch(&places, &mut []).iter().map(|f| f.distance).fold(0.0, f64::max);
                 if farthest <= self.slack {
                     return Ok(Some(self.curve(ids, &string.label, group)));
@@ -290,7 +290,7 @@ impl Binder<'_> {
         match Group::of_edges(self.model, &ids) {
             Ok(group) => Ok(Classification::Curve(self.curve(ids, "edge between surfaces", group))),
             Err(_) => {
-                let [a, b] = self.boundary.edges[edge].map(|n| self.mesh.node_tags[n.index()]);
+                let [a, b] = self.boundary.edges[edge].map(|n| self.mesh.node_tags()[n.index()]);
                 let label = |h: Option<&Classification>| match h {
                     Some(&Classification::Surface(s)) => self.result.surfaces[s].label.clone(),
                     _ => "a patch that is not associated with the CAD".to_owned(),
@@ -310,7 +310,7 @@ impl Binder<'_> {
                 nearby.extend(self.model.face(id).map_or(&[][..], |f| &f.edges).iter().copied());
             }
         }
-        let [a, b] = self.boundary.edges[edge].map(|n| self.mesh.points[n.index()]);
+        let [a, b] = self.boundary.edges[edge].map(|n| self.mesh.points()[n.index()]);
         let slack = self.slack;
         let holds = |id: &EdgeId| {
             let model = self.model;
@@ -324,7 +324,7 @@ impl Binder<'_> {
     }
 
     fn nodes(&mut self, candidates: &Candidates) {
-        let mut classifications: Vec<BTreeSet<Rank>> = vec![BTreeSet::new(); self.mesh.points.len()];
+        let mut classifications: Vec<BTreeSet<Rank>> = vec![BTreeSet::new(); self.mesh.points().len()];
         for (edge, ends) in self.boundary.edges.iter().enumerate() {
             for end in ends {
                 classifications[end.index()].insert(Rank::of(self.result.edges[edge]));
@@ -336,11 +336,11 @@ impl Binder<'_> {
             }
         }
         self.result.nodes =
-            (0..classifications.len()).map(|n| self.lowest(&classifications[n], self.mesh.points[n])).collect();
+            (0..classifications.len()).map(|n| self.lowest(&classifications[n], self.mesh.points()[n])).collect();
         for point in &candidates.points {
             let vertex = point.entities.iter().find_map(|e| vertex_of(*e)).and_then(|id| self.model.vertex(id));
             for node in &point.items {
-                let near = |v: &&cad::Vertex| v.point.distance(self.mesh.points[node.index()]) <= self.slack;
+                let near = |v: &&cad::Vertex| v.point.distance(self.mesh.points()[node.index()]) <= self.slack;
                 if let Some(vertex) = vertex.filter(near) {
                     self.result.nodes[node.index()] = Classification::Vertex(vertex.point);
                 }

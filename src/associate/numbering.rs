@@ -37,7 +37,8 @@ impl<'a> Numbering<'a> {
     /// The numbers of a mesh.
     #[must_use]
     pub fn new(mesh: &'a Mesh) -> Numbering<'a> {
-        let by_tag = mesh.node_tags.iter().zip(0..).filter_map(|(&tag, n)| Some((tag, NodeId::new(n).ok()?))).collect();
+        let by_tag =
+            mesh.node_tags().iter().zip(0..).filter_map(|(&tag, n)| Some((tag, NodeId::new(n).ok()?))).collect();
         let numbers = |zone: &Zone| {
             let mut numbers = FxHashMap::default();
             zone.nodes.iter().zip(1..).for_each(|(&node, number)| {
@@ -46,7 +47,7 @@ impl<'a> Numbering<'a> {
             });
             numbers
         };
-        Numbering { mesh, by_tag, in_zone: mesh.zones.iter().map(numbers).collect() }
+        Numbering { mesh, by_tag, in_zone: mesh.zones().iter().map(numbers).collect() }
     }
 
     /// The points that a mesh model of this reference counts: `/Base/zone`, or the zone's name alone.
@@ -54,7 +55,7 @@ impl<'a> Numbering<'a> {
     /// # Errors
     /// [`UnknownZone`]. A mesh file that has no zones, or one, leaves nothing to tell apart: any reference will do.
     pub fn part(&self, reference: &str) -> Result<Part, UnknownZone> {
-        let zones = &self.mesh.zones;
+        let zones = self.mesh.zones();
         let last = |path: &str| path.trim().rsplit('/').next().unwrap_or_default().to_owned();
         let whole = zones.iter().position(|zone| zone.name == reference.trim());
         let mut alike = (0..zones.len()).filter(|&z| last(&zones[z].name) == last(reference));
@@ -76,7 +77,7 @@ impl<'a> Numbering<'a> {
             Part::Whole => self.by_tag.get(&index).copied(),
             Part::Zone(zone) => {
                 let place = usize::try_from(index.checked_sub(1)?).ok()?;
-                self.mesh.zones[zone].nodes.get(place).copied()
+                self.mesh.zones()[zone].nodes.get(place).copied()
             }
         }
     }
@@ -85,7 +86,7 @@ impl<'a> Numbering<'a> {
     #[must_use]
     pub fn index(&self, part: Part, node: NodeId) -> Option<u64> {
         match part {
-            Part::Whole => Some(self.mesh.node_tags[node.index()]),
+            Part::Whole => Some(self.mesh.node_tags()[node.index()]),
             Part::Zone(zone) => self.in_zone[zone].get(&node).copied(),
         }
     }
@@ -94,14 +95,14 @@ impl<'a> Numbering<'a> {
     #[must_use]
     pub fn last(&self, part: Part) -> u64 {
         match part {
-            Part::Whole => self.mesh.node_tags.iter().copied().max().unwrap_or(0),
-            Part::Zone(zone) => self.mesh.zones[zone].nodes.len() as u64,
+            Part::Whole => self.mesh.node_tags().iter().copied().max().unwrap_or(0),
+            Part::Zone(zone) => self.mesh.zones()[zone].nodes.len() as u64,
         }
     }
 
     /// The parts that together are the mesh: its zones, or the whole.
     pub fn parts(&self) -> impl Iterator<Item = Part> + use<> {
-        let zones = self.mesh.zones.len();
+        let zones = self.mesh.zones().len();
         (0..zones).map(Part::Zone).chain((zones == 0).then_some(Part::Whole))
     }
 
@@ -110,7 +111,7 @@ impl<'a> Numbering<'a> {
     pub fn reference(&self, part: Part) -> &'a str {
         match part {
             Part::Whole => "volume",
-            Part::Zone(zone) => &self.mesh.zones[zone].name,
+            Part::Zone(zone) => &self.mesh.zones()[zone].name,
         }
     }
 }

@@ -29,7 +29,7 @@ pub fn check_boxes(
 ) -> Result<(), AssociateError> {
     let linked = || candidates.sheets.iter().filter(|s| !s.entities.is_empty());
     let corners = linked().flat_map(|s| s.items.iter()).flat_map(|&f| boundary.corners[f].iter());
-    let own = Aabb::of_points(corners.map(|n| mesh.points[n.index()]));
+    let own = Aabb::of_points(corners.map(|n| mesh.points()[n.index()]));
     let entities = linked()
         .flat_map(|s| s.entities.iter())
         .filter_map(|e| model.face(if let EntityId::Face(id) = e { *id } else { return None }));

@@ -141,7 +141,7 @@ fn farthest_by_patch(
         nodes.entry(boundary.faces[face].entity).or_default().extend(&boundary.corners[face]);
     }
     for (entity, nodes) in nodes {
-        let positions: Vec<DVec3> = nodes.iter().map(|n| mesh.points[n.index()]).collect();
+        let positions: Vec<DVec3> = nodes.iter().map(|n| mesh.points()[n.index()]).collect();
         let feet = group.closest_batch(&positions, &mut []);
         farthest.insert(entity, feet.iter().map(|foot| foot.distance).fold(0.0, f64::max));
     }
@@ -152,7 +152,7 @@ impl Undecided {
     fn new(kind: &'static str, mesh: &Mesh, nodes: &[NodeId], doubt: &Doubt) -> Undecided {
         Undecided {
             kind,
-            nodes: nodes.iter().map(|n| mesh.node_tags[n.index()]).collect(),
+            nodes: nodes.iter().map(|n| mesh.node_tags()[n.index()]).collect(),
             position: (mesh.points_of(nodes).sum::<DVec3>() / nodes.len() as f64).to_array(),
             reason: doubt.to_string(),
         }

@@ -25,7 +25,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     formats::check_output(&options.output)?;
     let mesh = formats::read(&options.mesh)?;
     formats::write(&options.output, &mesh, &options.form.with(&[]))?;
-    for note in &mesh.notes {
+    for note in mesh.notes() {
         print(&format!("note: {note}"))?;
     }
     print(&format!("written: {}", options.output.display()))?;

@@ -64,10 +64,10 @@ pub(super) fn bounds(bounds: Aabb) -> String {
 }
 
 fn mesh(mesh: &Mesh) -> Result<String, Failure> {
-    let mut text = format!("mesh of order {}, {} nodes\n", mesh.order, mesh.points.len());
-    writeln!(text, "  {}", bounds(Aabb::of_points(mesh.points.iter().copied())))?;
+    let mut text = format!("mesh of order {}, {} nodes\n", mesh.order(), mesh.points().len());
+    writeln!(text, "  {}", bounds(Aabb::of_points(mesh.points().iter().copied())))?;
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
-    for block in &mesh.blocks {
+    for block in mesh.blocks() {
         *counts.entry(block.cell.name()).or_default() += block.tags.len();
     }
     let counts: Vec<String> = counts.iter().map(|(cell, count)| format!("{count} {cell}")).collect();
@@ -79,7 +79,7 @@ fn mesh(mesh: &Mesh) -> Result<String, Failure> {
     for (entity, faces) in patches {
         writeln!(text, "  {entity}: {faces} faces {}", mesh.names_of(entity).join(","))?;
     }
-    for note in &mesh.notes {
+    for note in mesh.notes() {
         writeln!(text, "  note: {note}")?;
     }
     Ok(text)

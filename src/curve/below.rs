@@ -27,7 +27,7 @@ pub struct Below {
 
 impl From<Level<'_>> for Below {
     fn from(level: Level) -> Below {
-        let (mesh, mut moved) = (level.elevated.mesh, level.curved);
+        let (mesh, mut moved) = (level.elevated.mesh.into_parts(), level.curved);
         moved.par_iter_mut().zip(&mesh.points).for_each(|(position, straight)| *position -= *straight);
         let blocks = mesh.blocks.into_iter().map(|block| (block.cell, block.nodes)).collect();
         Below { order: mesh.order, blocks, moved }
@@ -38,12 +38,12 @@ impl Below {
     /// What moves each node of the straight mesh `above`, of a higher order and with the same elements, onto this curved mesh.
     #[must_use]
     pub fn raised(&self, above: &Mesh) -> Vec<DVec3> {
-        let mut raised = vec![DVec3::ZERO; above.points.len()];
+        let mut raised = vec![DVec3::ZERO; above.points().len()];
         let mut own = Vec::new();
-        for (high, (cell, low)) in above.blocks.iter().zip(&self.blocks) {
-            let mut weights = basis::at_lattice(*cell, self.order, above.order);
+        for (high, (cell, low)) in above.blocks().iter().zip(&self.blocks) {
+            let mut weights = basis::at_lattice(*cell, self.order, above.order());
             weights.iter_mut().flatten().filter(|w| w.abs() < NOTHING).for_each(|w| *w = 0.0);
-            let strides = [high.stride(above.order), cell.node_count(self.order)];
+            let strides = [high.stride(above.order()), cell.node_count(self.order)];
             let of_element = |(own, low): (&mut [DVec3], &[NodeId])| {
                 let still = low.iter().all(|n| self.moved[n.index()] == DVec3::ZERO);
                 for (own, weights) in own.iter_mut().zip(&weights).filter(|_| !still) {
@@ -71,23 +71,22 @@ mod tests {
     use super::*;
     use crate::element::bernstein;
     use crate::mesh::elevate::elevate;
-    use crate::mesh::{Block, EntityKey};
+    use crate::mesh::{Block, EntityKey, Parts};
 
     /// One element of a kind, at its unit corners.
     fn alone(cell: Cell) -> Mesh {
         let points: Vec<DVec3> = cell.corners().iter().map(|c| DVec3::from(c.map(f64::from))).collect();
         let nodes = (0..points.len()).map(|n| NodeId::new(n).unwrap()).collect();
         let entity = EntityKey::new(cell.dimension() as u8, 1);
-        let block = Block { cell, entity, physical_tags: vec![], tags: vec![1], nodes };
-        let (node_tags, node_entities) = ((1..=points.len() as u64).collect(), vec![None; points.len()]);
-        Mesh { points, node_tags, node_entities, blocks: vec![block], ..Mesh::default() }
+        let block = Block { tags: vec![1], nodes, ..Block::new(cell, entity) };
+        Mesh::new(Parts { points, blocks: vec![block], ..Parts::default() }).unwrap()
     }
 
     /// A curved mesh from its straight one.
     fn lower(straight: &Mesh, places: &[DVec3]) -> Below {
-        let blocks = straight.blocks.iter().map(|block| (block.cell, block.nodes.clone())).collect();
-        let moved = places.iter().zip(&straight.points).map(|(place, straight)| *place - *straight).collect();
-        Below { order: straight.order, blocks, moved }
+        let blocks = straight.blocks().iter().map(|block| (block.cell, block.nodes.clone())).collect();
+        let moved = places.iter().zip(straight.points()).map(|(place, straight)| *place - *straight).collect();
+        Below { order: straight.order(), blocks, moved }
     }
 
     #[test]
@@ -98,12 +97,12 @@ mod tests {
                     let [below, above] = [low, high].map(|order| elevate(&alone(cell), order).unwrap().mesh);
                     // Bent at every node, differently.
                     let bend = |(n, x): (usize, &DVec3)| *x + DVec3::new(0.1, -0.07, 0.05) * (1.0 + n as f64).sin();
-                    let places: Vec<DVec3> = below.points.iter().enumerate().map(bend).collect();
+                    let places: Vec<DVec3> = below.points().iter().enumerate().map(bend).collect();
                     let moved = lower(&below, &places).raised(&above);
-                    let raised: Vec<DVec3> = above.points.iter().zip(&moved).map(|(x, d)| *x + *d).collect();
+                    let raised: Vec<DVec3> = above.points().iter().zip(&moved).map(|(x, d)| *x + *d).collect();
                     let place = |mesh: &Mesh, places: &[DVec3], at: [f64; 3]| -> DVec3 {
-                        let values = basis::values(cell, mesh.order, at);
-                        mesh.blocks[0].nodes.iter().zip(values).map(|(n, v)| places[n.index()] * v).sum()
+                        let values = basis::values(cell, mesh.order(), at);
+                        mesh.blocks()[0].nodes.iter().zip(values).map(|(n, v)| places[n.index()] * v).sum()
                     };
                     for unit in [[0.2, 0.3, 0.1], [0.31, 0.05, 0.4], [0.05, 0.62, 0.17]] {
                         let at = bernstein::chart(cell, unit);
@@ -119,11 +118,11 @@ mod tests {
     fn what_does_not_move_stays_to_the_bit() {
         let order = |p: usize| Order::new(p).unwrap();
         let [below, above] = [2, 3].map(|p| elevate(&alone(Cell::Tet), order(p)).unwrap().mesh);
-        let mut places = below.points.clone();
+        let mut places = below.points().to_vec();
         places[9] += DVec3::splat(0.1); // the middle of the edge 2-3
         let moved = lower(&below, &places).raised(&above);
         let on_face = |x: &DVec3| x.y == 0.0 || x.z == 0.0; // faces without that edge
-        let still = above.points.iter().zip(&moved).filter(|(x, _)| on_face(x));
+        let still = above.points().iter().zip(&moved).filter(|(x, _)| on_face(x));
         assert!(still.clone().count() > 10);
         assert!(still.clone().all(|(_, d)| *d == DVec3::ZERO));
         assert!(moved.iter().any(|d| *d != DVec3::ZERO));

@@ -88,7 +88,7 @@ pub(super) fn drive(
     mut clock: Clock,
 ) -> Result<Curved, Error> {
     let Associated { boundary, mut association, periodic, cad_unit, cad_scale } = associated;
-    linear.periodic.extend(periodic);
+    linear.periodic_mut().extend(periodic);
     let case = Case { settings, boundary: &boundary, association: &association };
     let Continued { mut level, mut smoothed, notes, below, lower_orders } =
         Continuation::new(case, linear)?.run(&mut clock)?;
@@ -104,7 +104,8 @@ pub(super) fn drive(
     };
 
     let Level { elevated: Elevated { mut mesh, linear_nodes, .. }, curved, wall, .. } = level;
-    let straight = std::mem::replace(&mut mesh.points, curved);
+    let mut straight = curved;
+    straight.swap_with_slice(mesh.points_mut());
     association.notes.extend(notes);
     let Proof { certificate, walls } = proof;
     let seconds = clock.finish();

@@ -58,7 +58,7 @@ impl Associated {
         let straight = settings.patches.straight(linear, &boundary)?;
         let choose = |candidates: &mut Candidates| candidates.leave_straight(&boundary, &straight);
         let classified = classify(linkage, linear, &boundary, cad, settings.max_offset, &choose)?;
-        let known: Vec<_> = linear.periodic.iter().map(|pair| pair.slave).collect();
+        let known: Vec<_> = linear.periodic().iter().map(|pair| pair.slave).collect();
         let unknown = classified.candidates.periodic.into_iter().filter(|pair| !known.contains(&pair.slave));
         let periodic = unknown.collect();
         let (cad_unit, cad_scale) = (cad.unit().name.clone(), cad.scale());

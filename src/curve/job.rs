@@ -78,7 +78,7 @@ impl Job {
         let (own, cad) = self.scaled(self.read_cad(self.cad_scale.unwrap_or(1.0))?, classify)?;
         let mut summary =
             associate::summary(&own.source, &linear, &boundary, &cad, &own.candidates, own.inference.as_ref());
-        summary.notes = linear.notes.iter().cloned().chain(own.association.notes).collect();
+        summary.notes = linear.notes().iter().cloned().chain(own.association.notes).collect();
         Ok(summary)
     }
 

@@ -42,7 +42,7 @@ impl<'a> Level<'a> {
     pub fn new(case: Case<'a>, mut elevated: Elevated) -> (Level<'a>, Vec<String>) {
         let (periodic, notes) = PeriodicConstraint::new(&mut elevated, case.boundary, case.settings.freeze_linear);
         let wall = Wall::new(&case.association.nodes, elevated.boundary_nodes);
-        let curved = elevated.mesh.points.clone();
+        let curved = elevated.mesh.points().to_vec();
         (Level { case, elevated, curved, wall, periodic }, notes)
     }
 
@@ -55,13 +55,13 @@ impl<'a> Level<'a> {
     /// Straight coordinates of all nodes.
     #[must_use]
     pub fn straight(&self) -> &[DVec3] {
-        &self.elevated.mesh.points
+        self.elevated.mesh.points()
     }
 
     /// Straight coordinates of the linear nodes: the reference of the certificate.
     #[must_use]
     pub fn linear(&self) -> &[DVec3] {
-        &self.elevated.mesh.points[..self.elevated.linear_nodes]
+        &self.elevated.mesh.points()[..self.elevated.linear_nodes]
     }
 
     /// Where the wall's displacement puts a boundary node.

@@ -177,7 +177,7 @@ impl<'a> Continuation<'a> {
         clock.step(Step::Project);
         project(&mut level);
         let mut displacement = level.wall.displacements();
-        level.periodic.carry(&level.elevated.mesh.points, &mut displacement);
+        level.periodic.carry(level.elevated.mesh.points(), &mut displacement);
         level.wall.displace_all(&displacement);
         fit(&mut level);
         if let Some(layers) = self.case.settings.curve_layers {

@@ -27,7 +27,7 @@ impl PeriodicConstraint {
     pub fn new(elevated: &mut Elevated, boundary: &Boundary, freeze_linear: bool) -> (PeriodicConstraint, Vec<String>) {
         let mut notes = Vec::new();
         let mut leads: BTreeMap<NodeId, (NodeId, DAffine3)> = BTreeMap::new();
-        let mut records = std::mem::take(&mut elevated.mesh.periodic);
+        let mut records = std::mem::take(elevated.mesh.periodic_mut());
         for record in &mut records {
             let Some(map) = map_of(&elevated.mesh, record) else {
                 let Periodic { slave, master, .. } = record;
@@ -46,7 +46,7 @@ impl PeriodicConstraint {
         }
         // One entity on both sides is a pair of patches that the file cannot tell apart.
         records.retain(|record| record.slave.tag != record.master);
-        elevated.mesh.periodic = records;
+        *elevated.mesh.periodic_mut() = records;
         let images: Vec<_> = leads.keys().map(|&slave| (slave, root(&leads, slave))).collect();
         let images = images.into_iter().map(|(node, (of, map))| Image { node, of, map }).collect();
         (PeriodicConstraint { images }, notes)
@@ -124,7 +124,7 @@ fn new_pairs(elevated: &Elevated, boundary: &Boundary, record: &Periodic) -> Vec
             let seen = canonical(&images);
             let key: Vec<NodeId> = seen[..images.len()].iter().map(|&q| images[usize::from(q)]).collect();
             let Some(&lead) = known.get(&key[..]) else { continue };
-            for (own, other) in interior_slots(cell, elevated.mesh.order, seen).into_iter().enumerate() {
+            for (own, other) in interior_slots(cell, elevated.mesh.order(), seen).into_iter().enumerate() {
                 let node = |first: NodeId, slot: usize| NodeId::new(first.index() + slot).ok();
                 pairs.extend(node(first, own).zip(node(lead, other)));
             }
@@ -154,7 +154,7 @@ fn carried(
         }
     }
     for (_, block) in elevated.mesh.blocks_of(1).filter(|(_, block)| is_own(block.entity)) {
-        for nodes in block.elements(elevated.mesh.order) {
+        for nodes in block.elements(elevated.mesh.order()) {
             found.insert(sorted(&nodes[..Cell::Line.corner_count()]));
         }
     }

@@ -57,7 +57,7 @@ pub(crate) fn walls(level: &Level, asked: impl Fn(usize) -> bool) -> Walls {
     let numbers: Vec<usize> = (0..boundary.faces.len()).filter(|&f| on_surface(f) && asked(f)).collect();
     let face = |f: usize| {
         let corners = boundary.corners[f].iter().map(|n| linear[n.index()]).collect();
-        WallFace { cell: boundary.faces[f].cell, order: level.mesh().order, points: positions(level, f), corners }
+        WallFace { cell: boundary.faces[f].cell, order: level.mesh().order(), points: positions(level, f), corners }
     };
     let other = |f: usize| {
         let Classification::Surface(surface) = association.faces[f] else { return None };
@@ -73,7 +73,7 @@ fn positions(level: &Level, face: usize) -> Vec<DVec3> {
 
 /// The middle of a face's normals, where they are all on the side of the CAD's normals beside them; as surveyed, not proven.
 fn axis(level: &Level, face: usize, group: &Group) -> Option<DVec3> {
-    let (cell, order) = (level.case.boundary.faces[face].cell, level.mesh().order);
+    let (cell, order) = (level.case.boundary.faces[face].cell, level.mesh().order());
     let nodes = positions(level, face);
     let samples = Samples::survey(cell, Order::LINEAR, SURVEY * order.get());
     let (mut own, mut agreement) = (Vec::new(), Vec::new());

@@ -13,6 +13,6 @@ pub(super) fn smooth_level(
 ) -> Smoothed {
     let Level { case, elevated, curved, wall, periodic } = level;
     let constraint = CadConstraint::new(*case, elevated, wall, periodic);
-    let problem = Problem::new(&elevated.mesh, &elevated.mesh.points);
+    let problem = Problem::new(&elevated.mesh, elevated.mesh.points());
     smooth::smooth(&problem, &constraint, settings, curved, resumed, watch)
 }

@@ -67,8 +67,8 @@ impl Boundary {
     #[must_use]
     pub fn nodes<'m>(&self, face: usize, mesh: &'m Mesh) -> &'m [NodeId] {
         let own = &self.faces[face];
-        let block = &mesh.blocks[own.block];
-        let stride = block.stride(mesh.order);
+        let block = &mesh.blocks()[own.block];
+        let stride = block.stride(mesh.order());
         &block.nodes[own.element * stride..][..stride]
     }
 
@@ -76,7 +76,7 @@ impl Boundary {
     #[must_use]
     pub fn tag(&self, face: usize, mesh: &Mesh) -> u64 {
         let own = &self.faces[face];
-        mesh.blocks[own.block].tags[own.element]
+        mesh.blocks()[own.block].tags[own.element]
     }
 
     /// The face with these corners, in whatever order.

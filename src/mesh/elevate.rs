@@ -9,7 +9,7 @@ use std::ops::Range;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::{Block, EntityKey, FaceKey, Mesh, NodeId, TooMany};
+use super::{Block, EntityKey, FaceKey, Mesh, NodeId, Parts, TooMany};
 use crate::element::{Cell, InteriorSlots, Order, basis, interior_start};
 
 /// Elements whose sides are looked up at a time: what they take while they wait does not grow with the mesh.
@@ -159,8 +159,8 @@ impl Carriers {
 /// [`TooMany`] when the nodes no longer fit 32 bits.
 pub fn elevate(linear: &Mesh, order: Order) -> Result<Elevated, TooMany> {
     let mut builder = Builder::new(linear, order);
-    let mut blocks: Vec<Option<Block>> = vec![None; linear.blocks.len()];
-    let mut boundary_nodes = linear.points.len();
+    let mut blocks: Vec<Option<Block>> = vec![None; linear.blocks().len()];
+    let mut boundary_nodes = linear.points().len();
     for dimension in 0..=linear.dimension() {
         if dimension == linear.dimension() {
             boundary_nodes = builder.mesh.node_tags.len();
@@ -170,14 +170,18 @@ pub fn elevate(linear: &Mesh, order: Order) -> Result<Elevated, TooMany> {
         }
     }
     builder.place();
-    let mut mesh = builder.mesh;
-    mesh.blocks = blocks.into_iter().flatten().collect();
-    Ok(Elevated { mesh, linear_nodes: linear.points.len(), boundary_nodes, carriers: builder.carriers })
+    let parts = Parts { blocks: blocks.into_iter().flatten().collect(), ..builder.mesh };
+    Ok(Elevated {
+        mesh: Mesh { parts },
+        linear_nodes: linear.points().len(),
+        boundary_nodes,
+        carriers: builder.carriers,
+    })
 }
 
 struct Builder {
     order: Order,
-    mesh: Mesh,
+    mesh: Parts,
     next_tag: u64,
     carriers: Vec<Carriers>,
     linear_nodes: usize,
@@ -206,7 +210,8 @@ struct Seat {
 
 impl Builder {
     fn new(linear: &Mesh, order: Order) -> Builder {
-        let mesh = Mesh {
+        let linear = &linear.parts;
+        let mesh = Parts {
             order,
             points: linear.points.clone(),
             node_tags: linear.node_tags.clone(),
@@ -371,20 +376,11 @@ mod tests {
         let shuffle = |c: usize| (c * 3 + 1) % n;
         let permuted: Vec<DVec3> = (0..n).map(|i| points[(0..n).find(|&c| shuffle(c) == i).unwrap_or(i)]).collect();
         let shuffled = (0..n).map(|c| if n.is_multiple_of(3) { c } else { shuffle(c) });
-        let block = Block {
-            cell,
-            entity: EntityKey::new(cell.dimension() as u8, 7),
-            physical_tags: vec![],
-            tags: vec![1],
-            nodes: shuffled.map(|c| NodeId::new(c).unwrap()).collect(),
-        };
-        Mesh {
-            points: if n.is_multiple_of(3) { points } else { permuted },
-            node_tags: (1..=n as u64).collect(),
-            node_entities: vec![None; n],
-            blocks: vec![block],
-            ..Mesh::default()
-        }
+        let entity = EntityKey::new(cell.dimension() as u8, 7);
+        let nodes = shuffled.map(|c| NodeId::new(c).unwrap()).collect();
+        let block = Block { tags: vec![1], nodes, ..Block::new(cell, entity) };
+        let points = if n.is_multiple_of(3) { points } else { permuted };
+        Mesh::new(Parts { points, blocks: vec![block], ..Parts::default() }).unwrap()
     }
 
     #[test]
@@ -393,14 +389,15 @@ mod tests {
             for order in Order::all() {
                 let linear = alone(cell);
                 let elevated = elevate(&linear, order).unwrap();
-                let nodes = &elevated.mesh.blocks[0].nodes;
+                let nodes = &elevated.mesh.blocks()[0].nodes;
                 assert_eq!(nodes.len(), cell.node_count(order));
                 for (slot, at) in lattice(cell, order).iter().enumerate() {
                     let unit = at.map(|x| f64::from(x) / order.get() as f64);
                     let weights = basis::values(cell, Order::LINEAR, bernstein::chart(cell, unit));
-                    let corners = &linear.blocks[0].nodes;
-                    let expected: DVec3 = corners.iter().zip(weights).map(|(c, w)| linear.points[c.index()] * w).sum();
-                    let point = elevated.mesh.points[nodes[slot].index()];
+                    let corners = &linear.blocks()[0].nodes;
+                    let expected: DVec3 =
+                        corners.iter().zip(weights).map(|(c, w)| linear.points()[c.index()] * w).sum();
+                    let point = elevated.mesh.points()[nodes[slot].index()];
                     assert!(point.distance(expected) < 1e-13, "{cell} {order} node {slot}");
                 }
             }
@@ -415,26 +412,17 @@ mod tests {
     #[test]
     fn neighbours_share_the_nodes_between_them() {
         let id = |n: usize| NodeId::new(n).unwrap();
-        let block = Block {
-            cell: Cell::Triangle,
-            entity: EntityKey::new(2, 1),
-            physical_tags: vec![],
-            tags: vec![1, 2],
-            nodes: [0, 1, 2, 2, 3, 0].map(id).to_vec(),
-        };
-        let linear = Mesh {
-            points: vec![DVec3::ZERO, DVec3::X, DVec3::X + DVec3::Y, DVec3::Y],
-            node_tags: vec![4, 1, 9, 2],
-            node_entities: vec![None; 4],
-            blocks: vec![block],
-            ..Mesh::default()
-        };
+        let nodes = [0, 1, 2, 2, 3, 0].map(id).to_vec();
+        let block = Block { tags: vec![1, 2], nodes, ..Block::new(Cell::Triangle, EntityKey::new(2, 1)) };
+        let points = vec![DVec3::ZERO, DVec3::X, DVec3::X + DVec3::Y, DVec3::Y];
+        let parts = Parts { points, node_tags: vec![4, 1, 9, 2], blocks: vec![block], ..Parts::default() };
+        let linear = Mesh::new(parts).unwrap();
         let elevated = elevate(&linear, Order::MAX).unwrap();
         let mesh = &elevated.mesh;
         // 4 corners, 5 edges with 3 nodes, 2 triangles with 3.
-        assert_eq!(mesh.points.len(), 4 + 15 + 6);
-        assert_eq!(mesh.node_tags[4], 10);
-        let [a, b]: [Vec<NodeId>; 2] = std::array::from_fn(|e| mesh.blocks[0].nodes[e * 15..(e + 1) * 15].to_vec());
+        assert_eq!(mesh.points().len(), 4 + 15 + 6);
+        assert_eq!(mesh.node_tags()[4], 10);
+        let [a, b]: [Vec<NodeId>; 2] = std::array::from_fn(|e| mesh.blocks()[0].nodes[e * 15..(e + 1) * 15].to_vec());
         assert_eq!(a[9..12], b[9..12].iter().rev().copied().collect::<Vec<_>>()[..], "edge 2-0 seen from both sides");
         for (corners, first) in elevated.carriers[Cell::Line as usize].iter() {
             assert!(corners[0] < corners[1] && first.index() >= 4);

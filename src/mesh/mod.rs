@@ -28,37 +28,13 @@ pub use zone::Zone;
 
 use crate::element::{Cell, Order};
 
-/// A mesh of one polynomial order.
+/// A mesh of one polynomial order: [`Parts`] that fit each other.
 ///
 /// Nodes and elements keep the order and the numbers of the file. An elevated mesh is the same type: its first
 /// points are the linear mesh's, its blocks those of the linear mesh with longer connectivity.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
-    /// Order of every element.
-    pub order: Order,
-    /// Coordinates, in the file's unit.
-    pub points: Vec<DVec3>,
-    /// The file's number of each node; unique, positive, possibly sparse.
-    pub node_tags: Vec<u64>,
-    /// The entity of lowest dimension that each node is classified on (MSH 4.1); `None` where the file does not say.
-    pub node_entities: Vec<Option<EntityKey>>,
-    /// Parameters of nodes on their entity, where the file gives them: `(node, u, v)`; curves have `v = 0`.
-    pub node_parameters: Vec<(NodeId, [f64; 2])>,
-    /// Elements, in file order.
-    pub blocks: Vec<Block>,
-    /// What the file says of its entities.
-    pub entities: Vec<Entity>,
-    /// Names of physical groups.
-    pub physical_names: Vec<PhysicalName>,
-    /// Pairs of entities whose nodes correspond.
-    pub periodic: Vec<Periodic>,
-    /// Boundary conditions, where the file names them apart from the groups (CGNS, UGRID).
-    pub conditions: Vec<Condition>,
-    /// Parts whose nodes the file numbers each from 1 (CGNS, PLOT3D); empty where there is one such part, as `node_tags`
-    /// are its numbers then.
-    pub zones: Vec<Zone>,
-    /// What reading changed or left out.
-    pub notes: Vec<String>,
+    parts: Parts,
 }
 
 impl Mesh {
@@ -68,122 +44,101 @@ impl Mesh {
     /// [`Inconsistent`] where a list is too long or too short, or a node number is beyond the points.
     pub fn new(mut parts: Parts) -> Result<Mesh, Inconsistent> {
         parts.complete()?;
-        Ok(Mesh {
-            order: parts.order,
-            points: parts.points,
-            node_tags: parts.node_tags,
-            node_entities: parts.node_entities,
-            node_parameters: parts.node_parameters,
-            blocks: parts.blocks,
-            entities: parts.entities,
-            physical_names: parts.physical_names,
-            periodic: parts.periodic,
-            conditions: parts.conditions,
-            zones: parts.zones,
-            notes: parts.notes,
-        })
+        Ok(Mesh { parts })
     }
 
-    /// What the mesh is made of.
+    /// What the mesh is made of, to be changed and put together again.
     #[must_use]
     pub fn into_parts(self) -> Parts {
-        Parts {
-            order: self.order,
-            points: self.points,
-            node_tags: self.node_tags,
-            node_entities: self.node_entities,
-            node_parameters: self.node_parameters,
-            blocks: self.blocks,
-            entities: self.entities,
-            physical_names: self.physical_names,
-            periodic: self.periodic,
-            conditions: self.conditions,
-            zones: self.zones,
-            notes: self.notes,
-        }
+        self.parts
     }
 
     /// Order of every element.
     #[must_use]
     pub fn order(&self) -> Order {
-        self.order
+        self.parts.order
     }
 
     /// Coordinates of the nodes, in the file's unit.
     #[must_use]
     pub fn points(&self) -> &[DVec3] {
-        &self.points
+        &self.parts.points
     }
 
     /// Coordinates of the nodes, to be changed in place.
     pub fn points_mut(&mut self) -> &mut [DVec3] {
-        &mut self.points
+        &mut self.parts.points
     }
 
     /// The file's number of each node; unique, positive, possibly sparse.
     #[must_use]
     pub fn node_tags(&self) -> &[u64] {
-        &self.node_tags
+        &self.parts.node_tags
     }
 
     /// The entity of lowest dimension that each node is classified on (MSH 4.1); `None` where the file does not say.
     #[must_use]
     pub fn node_entities(&self) -> &[Option<EntityKey>] {
-        &self.node_entities
+        &self.parts.node_entities
     }
 
     /// Parameters of nodes on their entity, where the file gives them: `(node, u, v)`; curves have `v = 0`.
     #[must_use]
     pub fn node_parameters(&self) -> &[(NodeId, [f64; 2])] {
-        &self.node_parameters
+        &self.parts.node_parameters
     }
 
     /// Elements of every dimension, in file order.
     #[must_use]
     pub fn blocks(&self) -> &[Block] {
-        &self.blocks
+        &self.parts.blocks
     }
 
     /// What the file says of its entities.
     #[must_use]
     pub fn entities(&self) -> &[Entity] {
-        &self.entities
+        &self.parts.entities
     }
 
     /// Names of physical groups.
     #[must_use]
     pub fn physical_names(&self) -> &[PhysicalName] {
-        &self.physical_names
+        &self.parts.physical_names
     }
 
     /// Pairs of entities whose nodes correspond.
     #[must_use]
     pub fn periodic(&self) -> &[Periodic] {
-        &self.periodic
+        &self.parts.periodic
+    }
+
+    /// Pairs of entities, to be added to or taken out; their nodes must be nodes of the mesh.
+    pub(crate) fn periodic_mut(&mut self) -> &mut Vec<Periodic> {
+        &mut self.parts.periodic
     }
 
     /// Boundary conditions, where the file names them apart from the groups (CGNS, UGRID).
     #[must_use]
     pub fn conditions(&self) -> &[Condition] {
-        &self.conditions
+        &self.parts.conditions
     }
 
     /// Parts whose nodes the file numbers each from 1 (CGNS, PLOT3D); none where there is one such part.
     #[must_use]
     pub fn zones(&self) -> &[Zone] {
-        &self.zones
+        &self.parts.zones
     }
 
     /// What reading changed or left out.
     #[must_use]
     pub fn notes(&self) -> &[String] {
-        &self.notes
+        &self.parts.notes
     }
 
     /// The largest dimension of an element, 0 to 3: that of the mesh's cells.
     #[must_use]
     pub fn dimension(&self) -> usize {
-        let with_elements = self.blocks.iter().filter(|block| !block.tags.is_empty());
+        let with_elements = self.parts.blocks.iter().filter(|block| !block.tags.is_empty());
         with_elements.map(|block| block.cell.dimension()).max().unwrap_or(0)
     }
 
@@ -196,49 +151,49 @@ impl Mesh {
     /// The elements of the mesh's own dimension: volumes, or faces where there are none.
     #[must_use]
     pub fn cells(&self) -> Elements<'_> {
-        Elements::new(self.order, self.cell_blocks())
+        Elements::new(self.parts.order, self.cell_blocks())
     }
 
     /// The elements of one dimension less than the cells: those on the boundary, or between parts of the mesh.
     #[must_use]
     pub fn sides(&self) -> Elements<'_> {
-        Elements::new(self.order, self.side_blocks())
+        Elements::new(self.parts.order, self.side_blocks())
     }
 
     /// The elements of one kind, numbered among themselves.
     #[must_use]
     pub fn elements_of(&self, cell: Cell) -> Elements<'_> {
-        Elements::new(self.order, self.blocks.iter().filter(move |block| block.cell == cell))
+        Elements::new(self.parts.order, self.parts.blocks.iter().filter(move |block| block.cell == cell))
     }
 
     /// Blocks of cells.
     pub fn cell_blocks(&self) -> impl Iterator<Item = &Block> + Clone {
         let own = self.dimension();
-        self.blocks.iter().filter(move |block| block.cell.dimension() == own)
+        self.parts.blocks.iter().filter(move |block| block.cell.dimension() == own)
     }
 
     /// Blocks of sides.
     pub fn side_blocks(&self) -> impl Iterator<Item = &Block> + Clone {
         let own = self.dimension();
-        self.blocks.iter().filter(move |block| block.cell.dimension() + 1 == own)
+        self.parts.blocks.iter().filter(move |block| block.cell.dimension() + 1 == own)
     }
 
     /// Number of elements of the given dimension.
     #[must_use]
     pub fn element_count(&self, dimension: usize) -> usize {
-        self.blocks.iter().filter(|b| b.cell.dimension() == dimension).map(|b| b.tags.len()).sum()
+        self.parts.blocks.iter().filter(|b| b.cell.dimension() == dimension).map(|b| b.tags.len()).sum()
     }
 
     /// Blocks of the given dimension, with their place in [`Mesh::blocks`].
     pub fn blocks_of(&self, dimension: usize) -> impl Iterator<Item = (usize, &Block)> {
-        self.blocks.iter().enumerate().filter(move |(_, b)| b.cell.dimension() == dimension)
+        self.parts.blocks.iter().enumerate().filter(move |(_, b)| b.cell.dimension() == dimension)
     }
 
     /// Tags of the physical groups that an entity's elements belong to, each once; a negative one means reversed orientation.
     #[must_use]
     pub fn physical_tags_of(&self, entity: EntityKey) -> Vec<i32> {
-        let of_entity = self.entities.iter().filter(|e| e.key == entity).flat_map(|e| &e.physical_tags);
-        let of_blocks = self.blocks.iter().filter(|b| b.entity == entity).flat_map(|b| &b.physical_tags);
+        let of_entity = self.parts.entities.iter().filter(|e| e.key == entity).flat_map(|e| &e.physical_tags);
+        let of_blocks = self.parts.blocks.iter().filter(|b| b.entity == entity).flat_map(|b| &b.physical_tags);
         let mut tags: Vec<i32> = Vec::new();
         for &tag in of_entity.chain(of_blocks) {
             if !tags.contains(&tag) {
@@ -253,7 +208,8 @@ impl Mesh {
     pub fn names_of(&self, entity: EntityKey) -> Vec<String> {
         let mut names = Vec::new();
         for tag in self.physical_tags_of(entity) {
-            let known = self.physical_names.iter().find(|n| n.dimension == entity.dimension && n.tag == tag.abs());
+            let known =
+                self.parts.physical_names.iter().find(|n| n.dimension == entity.dimension && n.tag == tag.abs());
             if let Some(known) = known.filter(|known| !names.contains(&known.name)) {
                 names.push(known.name.clone());
             }
@@ -270,6 +226,6 @@ impl Mesh {
 
     /// The points of an element.
     pub fn points_of<'a>(&'a self, nodes: &'a [NodeId]) -> impl ExactSizeIterator<Item = DVec3> + 'a {
-        nodes.iter().map(|&n| self.points[n.index()])
+        nodes.iter().map(|&n| self.parts.points[n.index()])
     }
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{Block, Condition, Entity, EntityKey, NodeId, Periodic, PhysicalName, TooMany, Zone};
-use crate::element::Order;
+use crate::element::{Cell, Order};
 
 /// The parts of a [`Mesh`](super::Mesh).
 ///
@@ -80,6 +80,18 @@ pub enum Inconsistent {
 }
 
 impl Parts {
+    /// Adds an element, numbered one more than the elements so far, to the block of its kind on its entity.
+    pub fn push(&mut self, cell: Cell, entity: EntityKey, nodes: &[NodeId]) {
+        let tag = 1 + self.blocks.iter().map(|block| block.tags.len() as u64).sum::<u64>();
+        let known = self.blocks.iter().position(|block| block.entity == entity && block.cell == cell);
+        let place = known.unwrap_or_else(|| {
+            self.blocks.push(Block::new(cell, entity));
+            self.blocks.len() - 1
+        });
+        self.blocks[place].tags.push(tag);
+        self.blocks[place].nodes.extend_from_slice(nodes);
+    }
+
     /// Fills in what may be left empty, and holds the parts against each other.
     pub(super) fn complete(&mut self) -> Result<(), Inconsistent> {
         let nodes = self.points.len();

@@ -13,8 +13,8 @@ pub const CONGRUENT: f64 = 1e-6;
 /// shift that does.
 #[must_use]
 pub fn map_of(mesh: &Mesh, record: &Periodic) -> Option<DAffine3> {
-    let slack = CONGRUENT * Aabb::of_points(mesh.points.iter().copied()).diagonal();
-    let at = |node: NodeId| mesh.points[node.index()];
+    let slack = CONGRUENT * Aabb::of_points(mesh.points().iter().copied()).diagonal();
+    let at = |node: NodeId| mesh.points()[node.index()];
     let fits = |map: &DAffine3| {
         record.pairs.iter().all(|&(slave, master)| map.transform_point3(at(master)).distance(at(slave)) <= slack)
     };
@@ -49,14 +49,14 @@ pub fn matched(
     if masters.len() != slaves.len() || masters.is_empty() {
         return None;
     }
-    let slack = CONGRUENT * Aabb::of_points(mesh.points.iter().copied()).diagonal();
-    let boxes: Vec<Aabb> = slaves.iter().map(|n| Aabb::of_points([mesh.points[n.index()]])).collect();
+    let slack = CONGRUENT * Aabb::of_points(mesh.points().iter().copied()).diagonal();
+    let boxes: Vec<Aabb> = slaves.iter().map(|n| Aabb::of_points([mesh.points()[n.index()]])).collect();
     let tree = cad::BoxTree::new(&boxes);
     maps.iter().find_map(|map| {
         let mut taken = FxHashSet::default();
         let pair = |&master: &NodeId| {
-            let image = map.transform_point3(mesh.points[master.index()]);
-            let distance = |leaf: usize| Some(mesh.points[slaves[leaf].index()].distance_squared(image));
+            let image = map.transform_point3(mesh.points()[master.index()]);
+            let distance = |leaf: usize| Some(mesh.points()[slaves[leaf].index()].distance_squared(image));
             let found = tree.nearest(image, slack * slack, distance)?;
             taken.insert(found.leaf).then(|| (slaves[found.leaf], master))
         };

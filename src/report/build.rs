@@ -41,9 +41,9 @@ pub fn report(job: &Job, curved: &Curved) -> Report {
             cad_unit: curved.cad_unit.clone(),
             cad_scale: curved.cad_scale,
         },
-        order: mesh.order.into(),
+        order: mesh.order().into(),
         certified: curved.certificate.holds(),
-        nodes: Nodes { linear: curved.linear_nodes, curved: mesh.points.len() },
+        nodes: Nodes { linear: curved.linear_nodes, curved: mesh.points().len() },
         cells,
         patches,
         faces_without_cad: curved.association.faces.iter().filter(|own| !has_cad(own)).count(),
@@ -59,7 +59,7 @@ pub fn report(job: &Job, curved: &Curved) -> Report {
             end: curved.smoothed.end.into(),
         },
         projections: Projections { count: curved.wall.queries, unproven: curved.wall.unproven },
-        notes: curved.mesh.notes.iter().chain(&curved.association.notes).cloned().collect(),
+        notes: curved.mesh.notes().iter().chain(&curved.association.notes).cloned().collect(),
         seconds: curved.seconds.iter().map(|&(step, seconds)| StepReport { step: step.name(), seconds }).collect(),
         peak_memory: peak_memory(),
         threads: rayon::current_num_threads(),
@@ -87,7 +87,7 @@ fn walls(curved: &Curved) -> WallReport {
 
 fn grid_line_angles(curved: &Curved) -> GridLinesReport {
     let lines = GridLines::new(&curved.mesh, &curved.straight);
-    GridLinesReport { curved: lines.curved(&curved.mesh.points).into(), linear: lines.linear(&curved.straight).into() }
+    GridLinesReport { curved: lines.curved(curved.mesh.points()).into(), linear: lines.linear(&curved.straight).into() }
 }
 
 fn cells(curved: &Curved) -> Vec<CellReport> {
@@ -145,12 +145,12 @@ fn patch(curved: &Curved, entity: EntityKey) -> PatchReport {
 fn distance(curved: &Curved, face: usize) -> Option<f64> {
     let Classification::Surface(surface) = curved.association.faces[face] else { return None };
     let group = &curved.association.surfaces[surface].group;
-    let (order, cell) = (curved.mesh.order, curved.boundary.faces[face].cell);
+    let (order, cell) = (curved.mesh.order(), curved.boundary.faces[face].cell);
     let nodes = curved.boundary.nodes(face, &curved.mesh);
     let samples = Samples::survey(cell, Order::LINEAR, DISTANCE_DENSITY * order.get());
     let far = samples.points()[..samples.count()].iter().map(|&at| {
         let values = basis::values(cell, order, at);
-        let x: DVec3 = nodes.iter().zip(values).map(|(n, v)| curved.mesh.points[n.index()] * v).sum();
+        let x: DVec3 = nodes.iter().zip(values).map(|(n, v)| curved.mesh.points()[n.index()] * v).sum();
         group.closest(x, None).distance
     });
     far.reduce(f64::max)
@@ -159,7 +159,7 @@ fn distance(curved: &Curved, face: usize) -> Option<f64> {
 fn off_cad(curved: &Curved, off: &OffCadFace) -> OffCadReport {
     let face = &curved.boundary.faces[off.face];
     let corners = &curved.boundary.corners[off.face];
-    let middle: DVec3 = corners.iter().map(|n| curved.mesh.points[n.index()]).sum::<DVec3>() / corners.len() as f64;
+    let middle: DVec3 = corners.iter().map(|n| curved.mesh.points()[n.index()]).sum::<DVec3>() / corners.len() as f64;
     OffCadReport {
         element: curved.boundary.tag(off.face, &curved.mesh),
         entity: face.entity.to_string(),

@@ -57,7 +57,7 @@ impl CheckReport {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
             mesh: path.display().to_string(),
-            order: mesh.order.into(),
+            order: mesh.order().into(),
             certified: certificate.holds(),
             cells: certificate.tallies().map(counts).collect(),
             certificate: CertificateReport::new(mesh, certificate),

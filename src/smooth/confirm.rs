@@ -58,21 +58,20 @@ mod tests {
     use super::*;
     use crate::element::{Cell, Order};
     use crate::mesh::elevate::elevate;
-    use crate::mesh::{Block, EntityKey, Mesh, NodeId};
+    use crate::mesh::{Block, EntityKey, Mesh, NodeId, Parts};
 
     /// A P4 hex, squeezed along one axis: `dx/du` is a parabola of mean 1 with its minimum `least` at `c`.
     fn squeezed(c: f64, least: f64) -> (Mesh, Vec<DVec3>) {
         let points: Vec<DVec3> = Cell::Hex.corners().iter().map(|c| DVec3::from(c.map(f64::from))).collect();
         let nodes = (0..points.len()).map(|n| NodeId::new(n).unwrap()).collect();
         let entity = EntityKey::new(3, 1);
-        let block = Block { cell: Cell::Hex, entity, physical_tags: vec![], tags: vec![1], nodes };
-        let (node_tags, node_entities) = ((1..=8).collect(), vec![None; 8]);
-        let linear = Mesh { points, node_tags, node_entities, blocks: vec![block], ..Mesh::default() };
+        let block = Block { tags: vec![1], nodes, ..Block::new(Cell::Hex, entity) };
+        let linear = Mesh::new(Parts { points, blocks: vec![block], ..Parts::default() }).unwrap();
         let mesh = elevate(&linear, Order::new(4).unwrap()).unwrap().mesh;
         let cube = |u: f64| (u - c).powi(3) / 3.0;
         let k = (1.0 - least) / (cube(1.0) - cube(0.0));
         let bend = |x: &DVec3| DVec3::new(k * (cube(x.x) - cube(0.0)) + least * x.x, x.y, x.z);
-        let places = mesh.points.iter().map(bend).collect();
+        let places = mesh.points().iter().map(bend).collect();
         (mesh, places)
     }
 
@@ -82,7 +81,7 @@ mod tests {
         let between = 6.5 / DIVISIONS as f64;
         for least in [-5e-3, 5e-3] {
             let (mesh, places) = squeezed(between, least);
-            let problem = Problem::new(&mesh, &mesh.points);
+            let problem = Problem::new(&mesh, mesh.points());
             let survey = Kernels::new(&problem, DIVISIONS);
             let seen = problem.costs(&survey, &places, problem.elements())[0];
             assert!(seen.c_jac > 2e-3, "the survey must be blind to it: {seen:?}");

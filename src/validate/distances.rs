@@ -146,7 +146,7 @@ impl Ruler<'_> {
     ) -> Option<Measured> {
         let entities = self.geometry.of(target);
         let group = group(self.model, &entities)?.ok()?;
-        let positions: Vec<DVec3> = nodes.iter().map(|n| self.linked.mesh.points[n.index()]).collect();
+        let positions: Vec<DVec3> = nodes.iter().map(|n| self.linked.mesh.points()[n.index()]).collect();
         let feet = group.closest_batch(&positions, &mut []);
         let worst = (0..feet.len()).max_by(|&a, &b| feet[a].distance.total_cmp(&feet[b].distance))?;
         let cad = entities.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");

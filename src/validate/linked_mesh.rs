@@ -131,6 +131,6 @@ impl<'a> LinkedMesh<'a> {
 
     /// The file's number of a node, in messages.
     pub(super) fn tag(&self, node: NodeId) -> u64 {
-        self.numbering.index(self.part, node).unwrap_or_else(|| self.mesh.node_tags[node.index()])
+        self.numbering.index(self.part, node).unwrap_or_else(|| self.mesh.node_tags()[node.index()])
     }
 }

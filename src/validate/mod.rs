@@ -230,7 +230,7 @@ fn with_cad(
     findings: &mut Findings,
     validation: &mut Validation,
 ) {
-    let size = Aabb::of_points(linked.mesh.points.iter().copied()).diagonal();
+    let size = Aabb::of_points(linked.mesh.points().iter().copied()).diagonal();
     let tolerance = job.tolerance.unwrap_or(ON_CAD * size);
     validation.tolerance = Some(tolerance);
     if !distances::same_scale(linked, models, model, geometry, findings) {
@@ -249,8 +249,8 @@ fn with_cad(
 /// [`ValidateError::Mesh`], [`ValidateError::NotLinear`].
 pub fn read_linear(path: &Path) -> Result<Mesh, ValidateError> {
     let mesh = formats::read(path)?;
-    if mesh.order != crate::element::Order::LINEAR {
-        return Err(ValidateError::NotLinear { mesh: path.to_owned(), order: mesh.order });
+    if mesh.order() != crate::element::Order::LINEAR {
+        return Err(ValidateError::NotLinear { mesh: path.to_owned(), order: mesh.order() });
     }
     Ok(mesh)
 }

@@ -43,7 +43,7 @@ pub(super) fn check(
                 Parameters::Curve(t) => [t, 0.0],
                 Parameters::Surface(u, v) => [u, v],
             };
-            let place = linked.mesh.points[node.index()];
+            let place = linked.mesh.points()[node.index()];
             by_entity.entry(vertex.gref).or_default().push(Vertex { vertex, place, given });
         }
     }

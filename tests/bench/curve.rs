@@ -26,7 +26,7 @@ fn row(order: Order) -> Result<(), JobError> {
     let curved = job.run(&mut ())?;
     let total: f64 = curved.seconds.iter().map(|(_, s)| s).sum();
     let of = |step: Step| curved.seconds.iter().filter(|(s, _)| *s == step).map(|(_, t)| t).sum::<f64>();
-    let (nodes, sweeps) = (curved.mesh.points.len(), curved.smoothed.sweeps);
+    let (nodes, sweeps) = (curved.mesh.points().len(), curved.smoothed.sweeps);
     println!(
         "| {order} | {total:.2} | {:.0} x | {sweeps} | {:.2} | {:.3} |",
         total / of(Step::Elevate),

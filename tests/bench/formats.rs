@@ -11,7 +11,7 @@ use glam::DVec3;
 use sagitta::element::{Cell, Order};
 use sagitta::formats::{self, ReadOptions, WriteOptions, cgns, msh};
 use sagitta::mesh::elevate::elevate;
-use sagitta::mesh::{Block, EntityKey, Mesh, NodeId};
+use sagitta::mesh::{Block, EntityKey, Mesh, NodeId, Parts};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().collect();
@@ -85,14 +85,12 @@ fn best(mut work: impl FnMut() -> Result<(), Box<dyn Error>>) -> Result<f64, Box
 fn block(n: usize) -> Result<Mesh, Box<dyn Error>> {
     let count = n + 1;
     let node = |i: usize, j: usize, k: usize| NodeId::new(i + count * (j + count * k));
-    let mut mesh = Mesh::default();
+    let mut parts = Parts::default();
     for k in 0..count {
         for j in 0..count {
-            mesh.points.extend((0..count).map(|i| DVec3::new(i as f64, j as f64, k as f64) / n as f64));
+            parts.points.extend((0..count).map(|i| DVec3::new(i as f64, j as f64, k as f64) / n as f64));
         }
     }
-    mesh.node_tags = (1..=mesh.points.len() as u64).collect();
-    mesh.node_entities = vec![None; mesh.points.len()];
     let mut hexes = Vec::new();
     for (k, j, i) in (0..n).flat_map(|k| (0..n).flat_map(move |j| (0..n).map(move |i| (k, j, i)))) {
         for corner in Cell::Hex.corners() {
@@ -103,7 +101,7 @@ fn block(n: usize) -> Result<Mesh, Box<dyn Error>> {
     let mut tags = 1..;
     let mut push = |cell, entity, nodes: Vec<NodeId>, stride| {
         let tags = tags.by_ref().take(nodes.len() / stride).collect();
-        mesh.blocks.push(Block { cell, entity, physical_tags: Vec::new(), tags, nodes });
+        parts.blocks.push(Block { tags, nodes, ..Block::new(cell, entity) });
     };
     push(Cell::Hex, EntityKey::new(3, 1), hexes, 8);
     for side in 0..6_i32 {
@@ -119,15 +117,15 @@ fn block(n: usize) -> Result<Mesh, Box<dyn Error>> {
         }
         push(Cell::Quad, EntityKey::new(2, side + 1), quads, 4);
     }
-    Ok(mesh)
+    Ok(Mesh::new(parts)?)
 }
 
 fn ugrid(mesh: &Mesh) -> Vec<u8> {
-    let [quads, hexes] = [2, 3].map(|dimension| mesh.blocks_of(dimension).map(|(_, block)| block).collect::<Vec<_>>());
+    let (quads, hexes): (Vec<&Block>, Vec<&Block>) = (mesh.side_blocks().collect(), mesh.cell_blocks().collect());
     let count = |blocks: &[&Block]| blocks.iter().map(|block| block.tags.len()).sum::<usize>();
-    let counts = [mesh.points.len(), 0, count(&quads), 0, 0, 0, count(&hexes)];
+    let counts = [mesh.points().len(), 0, count(&quads), 0, 0, 0, count(&hexes)];
     let mut bytes: Vec<u8> = counts.iter().flat_map(|n| (*n as i32).to_le_bytes()).collect();
-    bytes.extend(mesh.points.iter().flat_map(|x| x.to_array()).flat_map(f64::to_le_bytes));
+    bytes.extend(mesh.points().iter().flat_map(|x| x.to_array()).flat_map(f64::to_le_bytes));
     let nodes = |blocks: &[&Block]| -> Vec<u8> {
         blocks.iter().flat_map(|block| &block.nodes).flat_map(|n| (n.index() as i32 + 1).to_le_bytes()).collect()
     };
@@ -139,9 +137,9 @@ fn ugrid(mesh: &Mesh) -> Vec<u8> {
 
 fn legacy(mesh: &Mesh) -> Vec<u8> {
     let mut bytes = b"# vtk DataFile Version 3.0\nblock\nBINARY\nDATASET UNSTRUCTURED_GRID\n".to_vec();
-    bytes.extend(format!("POINTS {} double\n", mesh.points.len()).bytes());
-    bytes.extend(mesh.points.iter().flat_map(|x| x.to_array()).flat_map(f64::to_be_bytes));
-    let cells = || mesh.blocks.iter().flat_map(|block| block.elements(Order::LINEAR));
+    bytes.extend(format!("POINTS {} double\n", mesh.points().len()).bytes());
+    bytes.extend(mesh.points().iter().flat_map(|x| x.to_array()).flat_map(f64::to_be_bytes));
+    let cells = || mesh.blocks().iter().flat_map(|block| block.elements(Order::LINEAR));
     let (count, numbers) = (cells().count(), cells().map(|nodes| 1 + nodes.len()).sum::<usize>());
     bytes.extend(format!("\nCELLS {count} {numbers}\n").bytes());
     for nodes in cells() {

@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use sagitta::formats::{self, WriteOptions};
-use sagitta::mesh::Mesh;
+use sagitta::mesh::{Mesh, Parts};
 use tempfile::TempDir;
 
 use super::{fixture, names_in, sagitta};
@@ -35,9 +35,10 @@ impl Place {
     }
 
     /// The case's mesh, changed.
-    pub fn mesh(&self, name: &str, change: impl FnOnce(&mut Mesh)) -> PathBuf {
-        let mut mesh = formats::read(&fixture(CASE, "msh")).unwrap();
-        change(&mut mesh);
+    pub fn mesh(&self, name: &str, change: impl FnOnce(&mut Parts)) -> PathBuf {
+        let mut parts = formats::read(&fixture(CASE, "msh")).unwrap().into_parts();
+        change(&mut parts);
+        let mesh = Mesh::new(parts).unwrap();
         let path = self.dir.path().join("in").join(name);
         formats::write(&path, &mesh, &WriteOptions::default()).unwrap();
         path

@@ -59,9 +59,9 @@ fn table(cell: Cell, order: Order) -> Vec<(Vec<[f64; 3]>, f64)> {
 pub fn measure(mesh: &Mesh) -> (f64, BTreeMap<EntityKey, f64>) {
     let (mut volume, mut areas) = (0.0, BTreeMap::new());
     let plane = mesh.element_count(3) == 0;
-    for block in mesh.blocks.iter().filter(|block| block.cell.dimension() >= 2) {
-        let table = table(block.cell, mesh.order);
-        for nodes in block.elements(mesh.order) {
+    for block in mesh.blocks().iter().filter(|block| block.cell.dimension() >= 2) {
+        let table = table(block.cell, mesh.order());
+        for nodes in block.elements(mesh.order()) {
             let points: Vec<DVec3> = mesh.points_of(nodes).collect();
             let mut normal = DVec3::ZERO;
             for (gradients, weight) in &table {

@@ -9,7 +9,7 @@ use sagitta::curve::Settings;
 use sagitta::curve::level::{Case as LevelCase, Level};
 use sagitta::element::{Cell, Order};
 use sagitta::mesh::elevate::elevate;
-use sagitta::mesh::{Block, Boundary, EntityKey, Mesh, NodeId};
+use sagitta::mesh::{Boundary, EntityKey, Mesh, NodeId, Parts};
 
 use super::section::{Section, sections};
 use super::side::Side;
@@ -21,32 +21,24 @@ const HEIGHT: f64 = 0.05;
 /// Nodes of the mesh, its blocks, and the nodes of the walls.
 #[derive(Default)]
 struct Layer {
-    points: Vec<DVec3>,
-    blocks: Vec<Block>,
-    elements: u64,
+    parts: Parts,
 }
 
 impl Layer {
     fn push(&mut self, cell: Cell, dimension: u8, tag: i32, nodes: &[usize]) {
-        let entity = EntityKey::new(dimension, tag);
-        let place = self.blocks.iter().position(|b| b.entity == entity && b.cell == cell).unwrap_or_else(|| {
-            self.blocks.push(Block { cell, entity, physical_tags: Vec::new(), tags: Vec::new(), nodes: Vec::new() });
-            self.blocks.len() - 1
-        });
-        self.elements += 1;
-        self.blocks[place].tags.push(self.elements);
-        self.blocks[place].nodes.extend(nodes.iter().map(|&node| NodeId::new(node).unwrap()));
+        let nodes: Vec<NodeId> = nodes.iter().map(|&node| NodeId::new(node).unwrap()).collect();
+        self.parts.push(cell, EntityKey::new(dimension, tag), &nodes);
     }
 
     /// Prisms on the triangles of a side, upwards or downwards; the wall gets the entity `tag`, the rest `tag + 10`.
     fn add(&mut self, side: &Side, tag: i32, up: bool) {
         let [n, m] = side.cells;
-        let first = self.points.len();
+        let first = self.parts.points.len();
         let count = (n + 1) * (m + 1);
         let wall = (0..count).map(|k| side.surface([(k / (m + 1)) as f64 / n as f64, (k % (m + 1)) as f64 / m as f64]));
         let wall: Vec<DVec3> = wall.collect();
         let lift = if up { HEIGHT } else { -HEIGHT } * DVec3::Z;
-        self.points.extend(wall.iter().copied().chain(wall.iter().map(|p| *p + lift)));
+        self.parts.points.extend(wall.iter().copied().chain(wall.iter().map(|p| *p + lift)));
         let at = |i: usize, j: usize| first + i * (m + 1) + j;
         for (i, j) in (0..n).flat_map(|i| (0..m).map(move |j| (i, j))) {
             for triangle in [[at(i, j), at(i + 1, j), at(i, j + 1)], [at(i + 1, j + 1), at(i, j + 1), at(i + 1, j)]] {
@@ -64,23 +56,16 @@ impl Layer {
     }
 
     fn mesh(self) -> Mesh {
-        let count = self.points.len();
-        Mesh {
-            points: self.points,
-            node_tags: (1..=count as u64).collect(),
-            node_entities: vec![None; count],
-            blocks: self.blocks,
-            ..Mesh::default()
-        }
+        Mesh::new(self.parts).unwrap()
     }
 }
 
 /// Two sheets: entity 1 on face 1, entity 2 on face 2.
 fn linkage(mesh: &Mesh) -> String {
     let sheet = |tag: i32, name: &str| {
-        let block = mesh.blocks.iter().find(|b| b.entity == EntityKey::new(2, tag)).unwrap();
-        let rows = block.elements(mesh.order).map(|nodes| {
-            let tags = nodes.iter().map(|node| mesh.node_tags[node.index()].to_string());
+        let block = mesh.blocks().iter().find(|b| b.entity == EntityKey::new(2, tag)).unwrap();
+        let rows = block.elements(mesh.order()).map(|nodes| {
+            let tags = nodes.iter().map(|node| mesh.node_tags()[node.index()].to_string());
             tags.collect::<Vec<_>>().join(" ")
         });
         format!(
@@ -121,7 +106,7 @@ fn project(section: &Section, folder: &Path) -> (usize, usize) {
         let (mut level, _) = Level::new(case, elevate(&linear, order).unwrap());
         sagitta::curve::wall::project(&mut level);
         let own = Group::of_faces(&model, &[FaceId::new(face)]).unwrap();
-        let wall = level.mesh().blocks.iter().find(|b| b.entity == EntityKey::new(2, tag)).unwrap();
+        let wall = level.mesh().blocks().iter().find(|b| b.entity == EntityKey::new(2, tag)).unwrap();
         let mut numbers: Vec<usize> = wall.nodes.iter().map(|node| node.index()).collect();
         numbers.sort_unstable();
         numbers.dedup();

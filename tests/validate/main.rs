@@ -221,12 +221,12 @@ fn faces_given_twice_left_out_or_inside() {
 fn faces_inside_the_volume_say_so() {
     let mesh = sagitta::formats::read(&fixture("cylinder_bl", "msh")).unwrap();
     let boundary = sagitta::mesh::Boundary::new(&mesh);
-    let block = mesh.blocks.iter().find(|block| block.cell.dimension() == 3).unwrap();
-    let inner = block.elements(mesh.order).find_map(|nodes| {
+    let block = mesh.blocks().iter().find(|block| block.cell.dimension() == 3).unwrap();
+    let inner = block.elements(mesh.order()).find_map(|nodes| {
         let mut faces = block.cell.faces().iter().map(|face| face.corners.iter().map(|&c| nodes[usize::from(c)]));
         faces.find_map(|face| Some(face.collect::<Vec<_>>()).filter(|corners| boundary.face(corners).is_none()))
     });
-    let tags: Vec<String> = inner.unwrap().iter().map(|n| mesh.node_tags[n.index()].to_string()).collect();
+    let tags: Vec<String> = inner.unwrap().iter().map(|n| mesh.node_tags()[n.index()].to_string()).collect();
     let spoilt = Spoilt::new("cylinder_bl", "meshlink.xml", |text| {
         let run = format!("<MeshFace etype=\"Quad4\">{}</MeshFace>\n</MeshSheet>", tags.join(" "));
         text.replacen("</MeshSheet>", &run, 1)
@@ -273,13 +273,13 @@ fn sharp_edges_inside_a_sheet() {
     let dir = tempfile::tempdir().unwrap();
     let moved = dir.path().join("weeble.msh");
     let mut mesh = sagitta::formats::read(&fixture("weeble", "msh")).unwrap();
-    let rim = mesh.node_tags.iter().position(|&tag| tag == 25).unwrap();
-    let waist = mesh.node_tags.iter().position(|&tag| tag == 39).unwrap();
-    let (x, up) = (mesh.points[rim], mesh.points[waist]);
+    let rim = mesh.node_tags().iter().position(|&tag| tag == 25).unwrap();
+    let waist = mesh.node_tags().iter().position(|&tag| tag == 39).unwrap();
+    let (x, up) = (mesh.points()[rim], mesh.points()[waist]);
     // The waist is a surface of revolution about z: the same height and radius, turned.
     let angle = x.y.atan2(x.x);
     let radius = up.x.hypot(up.y);
-    mesh.points[rim] = glam::DVec3::new(radius * angle.cos(), radius * angle.sin(), up.z);
+    mesh.points_mut()[rim] = glam::DVec3::new(radius * angle.cos(), radius * angle.sin(), up.z);
     sagitta::formats::write(&moved, &mesh, &sagitta::formats::WriteOptions::default()).unwrap();
     let linkage = fixture("weeble", "grouped.meshlink.xml");
     let text = std::fs::read_to_string(&linkage).unwrap();
@@ -295,7 +295,7 @@ fn another_unit_is_one_finding() {
     let dir = tempfile::tempdir().unwrap();
     let scaled = dir.path().join("weeble.msh");
     let mut mesh = sagitta::formats::read(&fixture("weeble", "msh")).unwrap();
-    mesh.points.iter_mut().for_each(|x| *x *= 0.001);
+    mesh.points_mut().iter_mut().for_each(|x| *x *= 0.001);
     sagitta::formats::write(&scaled, &mesh, &sagitta::formats::WriteOptions::default()).unwrap();
     let linkage = fixture("weeble", "meshlink.xml");
     let validation = Validation::of(&linkage, &args!["--mesh", scaled, "--cad", fixture("weeble", "step")]);

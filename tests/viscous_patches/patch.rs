@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use sagitta::certify::{self, Settings};
-use sagitta::element::{Cell, Order};
+use sagitta::element::Cell;
 use sagitta::formats::{self, WriteOptions};
-use sagitta::mesh::{Block, EntityKey, Mesh, NodeId};
+use sagitta::mesh::{EntityKey, Mesh, NodeId, Parts};
 
 use crate::case::Case;
 use crate::cells::Cells;
@@ -46,7 +46,7 @@ impl Patch {
         let mut random = Random(case.seed);
         for rejected in 0..ATTEMPTS {
             let patch = Patch::attempt(case, &mut random);
-            if certify::mesh(&patch.mesh, &patch.mesh.points, None, &Settings::default()).holds() {
+            if certify::mesh(&patch.mesh, patch.mesh.points(), None, &Settings::default()).holds() {
                 return Patch { rejected, ..patch };
             }
         }
@@ -81,16 +81,10 @@ impl Patch {
 
 /// The mesh of the cells, its boundary faces on entities: those of the wall have the numbers of their CAD faces.
 fn mesh(cells: Cells, grid: &Grid, split: Option<usize>, layers: usize) -> Mesh {
-    let mut blocks: Vec<Block> = Vec::new();
-    let mut count = 0;
+    let mut parts = Parts::default();
     let mut push = |cell: Cell, entity: EntityKey, nodes: &[usize]| {
-        let place = blocks.iter().position(|b| b.entity == entity && b.cell == cell).unwrap_or_else(|| {
-            blocks.push(Block { cell, entity, physical_tags: Vec::new(), tags: Vec::new(), nodes: Vec::new() });
-            blocks.len() - 1
-        });
-        count += 1;
-        blocks[place].tags.push(count);
-        blocks[place].nodes.extend(nodes.iter().map(|&node| NodeId::new(node).unwrap()));
+        let nodes: Vec<NodeId> = nodes.iter().map(|&node| NodeId::new(node).unwrap()).collect();
+        parts.push(cell, entity, &nodes);
     };
     for (cell, corners) in boundary(&cells.cells) {
         push(cell, EntityKey::new(2, entity(&corners, grid, split, layers)), &corners);
@@ -98,15 +92,7 @@ fn mesh(cells: Cells, grid: &Grid, split: Option<usize>, layers: usize) -> Mesh 
     for (cell, corners) in &cells.cells {
         push(*cell, EntityKey::new(3, 1), corners);
     }
-    let count = cells.points.len();
-    Mesh {
-        order: Order::LINEAR,
-        points: cells.points,
-        node_tags: (1..=count as u64).collect(),
-        node_entities: vec![None; count],
-        blocks,
-        ..Mesh::default()
-    }
+    Mesh::new(Parts { points: cells.points, ..parts }).unwrap()
 }
 
 /// Faces that one cell alone has, seen from outside counterclockwise.

@@ -14,8 +14,8 @@ pub fn inverted(mesh: &Mesh) -> Vec<(Cell, u64)> {
     let mut tables = BTreeMap::new();
     let mut found = Vec::new();
     for (_, block) in mesh.blocks_of(3) {
-        let table = tables.entry(block.cell).or_insert_with(|| table(block.cell, mesh.order));
-        for (nodes, &tag) in block.elements(mesh.order).zip(&block.tags) {
+        let table = tables.entry(block.cell).or_insert_with(|| table(block.cell, mesh.order()));
+        for (nodes, &tag) in block.elements(mesh.order()).zip(&block.tags) {
             let points: Vec<DVec3> = mesh.points_of(nodes).collect();
             let determinant = |gradients: &Vec<DVec3>| {
                 let columns = |axis: usize| points.iter().zip(gradients).map(|(&x, g)| (x - points[0]) * g[axis]).sum();

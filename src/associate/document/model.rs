@@ -89,7 +89,7 @@ fn with_periodic<'a>(
     mesh: &Mesh,
     boundary: &Boundary,
 ) -> BTreeMap<EntityKey, Runs<'a>> {
-    let pairs = mesh.periodic.iter().filter(|pair| pair.slave.is_surface());
+    let pairs = mesh.periodic().iter().filter(|pair| pair.slave.is_surface());
     let periodic: BTreeSet<EntityKey> = pairs.flat_map(|pair| [pair.slave, EntityKey::new(2, pair.master)]).collect();
     for entity in periodic {
         let runs = patches.entry(entity).or_default();

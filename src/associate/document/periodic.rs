@@ -20,7 +20,7 @@ pub(super) struct Pairs {
 /// The pairs of patches of the mesh; `aref` says that they are periodic.
 pub(super) fn pairs(mesh: &Mesh, boundary: &Boundary, models: &Models, aref: Option<AttributeId>) -> Pairs {
     let mut pairs = Pairs::default();
-    for record in mesh.periodic.iter().filter(|record| record.slave.is_surface()) {
+    for record in mesh.periodic().iter().filter(|record| record.slave.is_surface()) {
         let master = EntityKey::new(2, record.master);
         let sheet = |entity: EntityKey| match models.sheets.get(&entity).map(|names| &names[..]) {
             Some([only]) => Some(only.clone()),

@@ -43,7 +43,7 @@ impl Incidence {
         let curve_tree = BoxTree::new(&curves.iter().map(|(_, group)| group.bounds()).collect::<Vec<_>>());
         let near = |x: DVec3, slack: f64| Aabb::of_points([x]).grown(slack);
         let at = |n: usize| {
-            let (x, Some(slack)) = (mesh.points[n], slack[n]) else { return Default::default() };
+            let (x, Some(slack)) = (mesh.points()[n], slack[n]) else { return Default::default() };
             let holds = |&i: &usize| surfaces[i].1.closest(x, None).distance <= slack;
             let faces = surface_tree.overlapping(near(x, slack)).into_iter().filter(holds).map(|i| surfaces[i].0);
             let edges = curve_tree.overlapping(near(x, slack)).into_iter().filter_map(|i| {
@@ -54,13 +54,13 @@ impl Incidence {
         };
         type AtNode = (Vec<FaceId>, Vec<(EdgeId, f64)>);
         let (faces, edges) =
-            (0..mesh.points.len()).into_par_iter().map(at).collect::<Vec<AtNode>>().into_iter().unzip();
+            (0..mesh.points().len()).into_par_iter().map(at).collect::<Vec<AtNode>>().into_iter().unzip();
         let vertex = |n: usize| {
             let near =
-                |vertex: &&cad::Vertex| slack[n].is_some_and(|slack| vertex.point.distance(mesh.points[n]) <= slack);
+                |vertex: &&cad::Vertex| slack[n].is_some_and(|slack| vertex.point.distance(mesh.points()[n]) <= slack);
             model.vertices().iter().filter(near).map(|vertex| vertex.id).collect()
         };
-        let vertices = (0..mesh.points.len()).into_par_iter().map(vertex).collect();
+        let vertices = (0..mesh.points().len()).into_par_iter().map(vertex).collect();
         Incidence { faces, edges, vertices }
     }
 
@@ -82,7 +82,7 @@ impl Incidence {
             for step in 0..steps {
                 let [(from, a), (to, b)] = [row[step], row[(step + 1) % row.len()]];
                 let Some(found) = boundary.edge([a, b]) else { continue };
-                let [a, b] = [a, b].map(|n| mesh.points[n.index()]);
+                let [a, b] = [a, b].map(|n| mesh.points()[n.index()]);
                 let foot = group.closest(0.5 * (a + b), None);
                 let t = foot.parameters[0];
                 let between = if from < to { (from..=to).contains(&t) } else { t >= from || t <= to };
@@ -97,7 +97,7 @@ impl Incidence {
 
 /// How far each boundary node may be from what holds it; `None` inside the volume.
 fn slacks(mesh: &Mesh, boundary: &Boundary, tolerance: &Tolerance) -> Vec<Option<f64>> {
-    let mut shortest = vec![f64::INFINITY; mesh.points.len()];
+    let mut shortest = vec![f64::INFINITY; mesh.points().len()];
     let cells = mesh.cells();
     for [a, b] in cells.iter().flat_map(|cell| cell.edges()).chain(boundary.edges.iter().copied()) {
         let length = mesh.points()[a.index()].distance(mesh.points()[b.index()]);
@@ -105,7 +105,7 @@ fn slacks(mesh: &Mesh, boundary: &Boundary, tolerance: &Tolerance) -> Vec<Option
             shortest[end.index()] = shortest[end.index()].min(length);
         }
     }
-    let mut slacks = vec![None; mesh.points.len()];
+    let mut slacks = vec![None; mesh.points().len()];
     for node in boundary.corners.iter().flatten() {
         slacks[node.index()] = Some(tolerance.at(shortest[node.index()]));
     }

@@ -40,7 +40,7 @@ impl Tolerance {
     /// [`ON_CAD`] of the mesh's bounding-box diagonal, and at most a tenth of the shortest mesh edge at the node.
     #[must_use]
     pub fn of(mesh: &Mesh) -> Tolerance {
-        let box_size = Aabb::of_points(mesh.points.iter().copied()).diagonal();
+        let box_size = Aabb::of_points(mesh.points().iter().copied()).diagonal();
         Tolerance { distance: ON_CAD * box_size, local: true }
     }
 

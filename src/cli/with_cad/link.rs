@@ -86,7 +86,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     linkage_schema::write(&written.document, &mut text)?;
     formats::write_bytes(&options.output, &text)?;
     let mut summary = associate::summary(source, &mesh, &boundary, &model, &candidates, inference.as_ref());
-    summary.notes.extend(mesh.notes.iter().cloned().chain(model.losses()).chain(written.notes));
+    summary.notes.extend(mesh.notes().iter().cloned().chain(model.losses()).chain(written.notes));
     if let Some(path) = &options.report {
         write_json(path, &summary)?;
     }
@@ -125,5 +125,5 @@ fn classify(options: &Options, mesh: &Mesh, boundary: &Boundary, model: &Model) 
 }
 
 fn size_of(mesh: &Mesh) -> f64 {
-    cad::Aabb::of_points(mesh.points.iter().copied()).diagonal()
+    cad::Aabb::of_points(mesh.points().iter().copied()).diagonal()
 }

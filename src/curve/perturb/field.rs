@@ -72,12 +72,12 @@ impl<'a> Field<'a> {
     ) -> Field<'a> {
         let (mesh, linear_nodes) = (&elevated.mesh, elevated.linear_nodes);
         let (starts, around) = faces_around(wall, linear_nodes);
-        let points = &mesh.points[..];
+        let points = &mesh.points()[..];
         let sought: Vec<u32> =
             (0..wall.len() as u32).filter(|&f| wall[f as usize].corners().iter().all(|n| seeds[n.index()])).collect();
         let bounds = |&f: &u32| Aabb::of_points(wall[f as usize].corners().iter().map(|n| points[n.index()]));
         let boxes: Vec<Aabb> = sought.iter().map(bounds).collect();
-        let mut reach = reaches(wall, displacement, &mesh.points, linear_nodes);
+        let mut reach = reaches(wall, displacement, mesh.points(), linear_nodes);
         for (own, &inherited) in reach.iter_mut().zip(inherited) {
             *own = own.max(inherited);
         }
@@ -85,7 +85,7 @@ impl<'a> Field<'a> {
         Field {
             reach,
             ends,
-            order: mesh.order,
+            order: mesh.order(),
             points,
             wall,
             displacement,

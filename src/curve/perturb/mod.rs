@@ -80,7 +80,7 @@ pub fn perturb(level: &Level, mut displacement: Vec<DVec3>) -> Vec<DVec3> {
     let classification = |n: usize| state.classification(n);
     let mut wall = wall_faces(elevated, boundary, |f| curved(association.faces[f]));
     let mut straight = wall_faces(elevated, boundary, |f| association.faces[f] == Classification::Straight);
-    let nodes = elevated.mesh.points.len();
+    let nodes = elevated.mesh.points().len();
     let moves = |face: &WallFace| face.nodes.iter().any(|n| displacement[n.index()] != DVec3::ZERO);
     if wall.is_empty() && straight.iter().any(moves) {
         wall = std::mem::take(&mut straight); // the rims of planes are all that is curved
@@ -113,12 +113,12 @@ pub fn perturb(level: &Level, mut displacement: Vec<DVec3>) -> Vec<DVec3> {
     let mut carried = carry(&between, elevated, displacement.clone(), in_plane);
     carried.par_iter_mut().enumerate().skip(linear).for_each(|(n, d)| {
         if let Some(plane) = level.plane_of(n) {
-            *d = plane.closest(elevated.mesh.points[n] + *d) - elevated.mesh.points[n];
+            *d = plane.closest(elevated.mesh.points()[n] + *d) - elevated.mesh.points()[n];
         }
     });
     drop(between);
     displacement = carried;
-    level.periodic.carry(&elevated.mesh.points, &mut displacement);
+    level.periodic.carry(elevated.mesh.points(), &mut displacement);
 
     wall.extend(planes);
     let field = Field::new(elevated, &wall, &displacement, &all_seeds, all_roots, &reach, beyond);

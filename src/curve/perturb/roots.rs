@@ -47,7 +47,7 @@ impl<'a> Graph<'a> {
         for n in 0..linear_nodes {
             neighbours[starts[n] as usize..starts[n + 1] as usize].sort_unstable();
         }
-        Graph { points: &elevated.mesh.points[..linear_nodes], starts, neighbours }
+        Graph { points: &elevated.mesh.points()[..linear_nodes], starts, neighbours }
     }
 
     fn around(&self, node: usize) -> &[u32] {

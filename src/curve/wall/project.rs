@@ -105,7 +105,7 @@ impl<'a> Projector<'_, 'a> {
         let level = &mut *self.level;
         level.wall.count_queries(feet.queries, feet.unproven);
         for (node, position) in nodes.zip(feet.positions) {
-            level.wall.displace(node, position - level.elevated.mesh.points[node]);
+            level.wall.displace(node, position - level.elevated.mesh.points()[node]);
         }
     }
 
@@ -124,7 +124,7 @@ impl<'a> Projector<'_, 'a> {
 
     fn edges(&mut self) {
         let elevated = &self.level.elevated;
-        let order = elevated.mesh.order;
+        let order = elevated.mesh.order();
         let inner = interior_count(Cell::Line, order);
         let carriers = &elevated.carriers[Cell::Line as usize];
         let on_boundary = carriers.iter().take_while(|(_, first)| first.index() < elevated.boundary_nodes);
@@ -187,12 +187,12 @@ impl<'a> Projector<'_, 'a> {
     /// Nodes of a boundary face: those of its rim, and those inside.
     fn rim_and_inside(&self, face: usize) -> (&[NodeId], &[NodeId]) {
         let (boundary, mesh) = (self.level.case.boundary, self.level.mesh());
-        boundary.nodes(face, mesh).split_at(interior_start(boundary.faces[face].cell, mesh.order))
+        boundary.nodes(face, mesh).split_at(interior_start(boundary.faces[face].cell, mesh.order()))
     }
 
     /// Where the inner nodes of a face would go: the smoothest extension of its rim's displacement.
     fn wishes(&self, cell: Cell, rim: &[NodeId], inner: &[NodeId]) -> Vec<DVec3> {
-        let extension = interior_extension(cell, self.level.mesh().order);
+        let extension = interior_extension(cell, self.level.mesh().order());
         let moved = |weights: &[f64]| -> DVec3 {
             rim.iter().zip(weights).map(|(n, &w)| self.level.wall.displacement(n.index()) * w).sum()
         };

@@ -26,10 +26,10 @@ fn with(from: &str, to: &str) -> String {
 fn sparse_numbers_unknown_sections_and_odd_spacing_are_read() {
     let whole = [HEAD, NODES, ELEMENTS].concat();
     let mesh = parse(whole.as_bytes()).unwrap();
-    assert_eq!(mesh.node_tags, [10, 30, 20]);
-    assert_eq!(mesh.node_entities, [Some(EntityKey::new(2, 7)); 3]);
-    assert_eq!(mesh.blocks[0].tags, [5]);
-    assert_eq!(mesh.blocks[0].nodes.iter().map(|n| n.index()).collect::<Vec<_>>(), [0, 1, 2]);
+    assert_eq!(mesh.node_tags(), [10, 30, 20]);
+    assert_eq!(mesh.node_entities(), [Some(EntityKey::new(2, 7)); 3]);
+    assert_eq!(mesh.blocks()[0].tags, [5]);
+    assert_eq!(mesh.blocks()[0].nodes.iter().map(|n| n.index()).collect::<Vec<_>>(), [0, 1, 2]);
     let odd =
         format!("$Comments\nby hand: $Nodes $En$EndComment\n$EndComments\n\n{whole}$NodeData\n1 2 3\n$EndNodeData");
     assert_eq!(parse(odd.replace('\n', "\r\n").as_bytes()).unwrap(), mesh);
@@ -187,7 +187,7 @@ fn binary_that_was_cut_off_is_told_at_every_length() {
     let mesh = parse([HEAD, NODES, ELEMENTS].concat().as_bytes()).unwrap();
     let mut whole = Vec::new();
     write(&mut whole, &mesh, Version::V4_1, Encoding::Binary).unwrap();
-    assert_eq!(parse(&whole).unwrap().points, mesh.points);
+    assert_eq!(parse(&whole).unwrap().points(), mesh.points());
     for length in 0..whole.len() - 1 {
         assert!(parse(&whole[..length]).is_err(), "cut to {length} of {}", whole.len());
     }
@@ -234,8 +234,11 @@ fn both_byte_orders_are_read() {
         let mut bytes = format!("$MeshFormat\n{number} 1 8\n\0\0\0\x01\n$EndMeshFormat\n").into_bytes();
         write_sections(&mut BigEndian(&mut bytes), &mesh, version).unwrap();
         let again = parse(&bytes).unwrap();
-        assert_eq!((again.points, again.node_tags), (mesh.points.clone(), mesh.node_tags.clone()), "{number}");
-        assert_eq!((&again.blocks[0].nodes, &again.blocks[0].tags), (&mesh.blocks[0].nodes, &mesh.blocks[0].tags));
+        assert_eq!((again.points(), again.node_tags()), (mesh.points(), mesh.node_tags()), "{number}");
+        assert_eq!(
+            (&again.blocks()[0].nodes, &again.blocks()[0].tags),
+            (&mesh.blocks()[0].nodes, &mesh.blocks()[0].tags)
+        );
     }
 }
 
@@ -248,16 +251,19 @@ fn an_element_in_several_groups_is_one_element() {
     let by_group = "$Elements\n4\n1 2 2 8 5 1 2 3\n3 2 2 8 5 2 4 3\n2 2 2 9 5 1 2 3\n4 2 2 9 5 2 4 3\n$EndElements\n";
     for elements in [by_element, by_group] {
         let mesh = parse([OLD, elements].concat().as_bytes()).unwrap();
-        assert_eq!(mesh.blocks.len(), 1, "{elements}");
-        assert_eq!((&mesh.blocks[0].physical_tags[..], &mesh.blocks[0].tags[..]), (&[8, 9][..], &[1, 3][..]));
+        assert_eq!(mesh.blocks().len(), 1, "{elements}");
+        assert_eq!((&mesh.blocks()[0].physical_tags[..], &mesh.blocks()[0].tags[..]), (&[8, 9][..], &[1, 3][..]));
         for version in [Version::V4_1, Version::V2_2] {
             let mut out = Vec::new();
             write(&mut out, &mesh, version, Encoding::Ascii).unwrap();
             let again = parse(&out).unwrap();
-            assert_eq!((&again.blocks[0].nodes, &again.blocks[0].tags), (&mesh.blocks[0].nodes, &mesh.blocks[0].tags));
+            assert_eq!(
+                (&again.blocks()[0].nodes, &again.blocks()[0].tags),
+                (&mesh.blocks()[0].nodes, &mesh.blocks()[0].tags)
+            );
             let groups = match version {
-                Version::V4_1 => &again.entities[0].physical_tags,
-                Version::V2_2 => &again.blocks[0].physical_tags,
+                Version::V4_1 => &again.entities()[0].physical_tags,
+                Version::V2_2 => &again.blocks()[0].physical_tags,
             };
             assert_eq!(groups, &[8, 9]);
         }
@@ -271,38 +277,41 @@ fn elements_of_one_entity_in_different_groups_get_entities_of_their_own() {
     let mut out = Vec::new();
     write(&mut out, &mesh, Version::V4_1, Encoding::Ascii).unwrap();
     let again = parse(&out).unwrap();
-    let entities: Vec<_> = again.entities.iter().map(|e| (e.key, &e.physical_tags[..])).collect();
+    let entities: Vec<_> = again.entities().iter().map(|e| (e.key, &e.physical_tags[..])).collect();
     let key = EntityKey::new;
     assert_eq!(entities, [(key(1, 1), &[][..]), (key(2, 5), &[8]), (key(2, 6), &[9])]);
-    assert_eq!(again.blocks.iter().map(|b| b.entity).collect::<Vec<_>>(), [key(2, 5), key(2, 6), key(1, 1)]);
+    assert_eq!(again.blocks().iter().map(|b| b.entity).collect::<Vec<_>>(), [key(2, 5), key(2, 6), key(1, 1)]);
     let nodes = [Some(key(1, 1)), Some(key(1, 1)), Some(key(2, 6)), Some(key(2, 6))];
-    assert_eq!(again.node_entities, nodes, "each node on the entity of lowest dimension");
+    assert_eq!(again.node_entities(), nodes, "each node on the entity of lowest dimension");
 }
 
 #[test]
 fn high_order_nodes_in_any_order_make_one_block_an_entity() {
-    let mut mesh = parse([OLD, "$Elements\n1\n1 2 2 8 5 1 2 3\n$EndElements\n"].concat().as_bytes()).unwrap();
+    let mesh = parse([OLD, "$Elements\n1\n1 2 2 8 5 1 2 3\n$EndElements\n"].concat().as_bytes()).unwrap();
+    let mut parts = mesh.into_parts();
     let (curve, surface) = (EntityKey::new(1, 1), EntityKey::new(2, 5));
-    mesh.points.truncate(3);
-    mesh.node_tags.truncate(3);
-    mesh.order = crate::element::Order::new(2).unwrap();
-    mesh.node_entities = vec![Some(curve), Some(curve), Some(surface), Some(surface), Some(curve), Some(surface)];
+    parts.points.truncate(3);
+    parts.node_tags.truncate(3);
+    parts.order = crate::element::Order::new(2).unwrap();
+    parts.node_entities = vec![Some(curve), Some(curve), Some(surface), Some(surface), Some(curve), Some(surface)];
     for n in 3..6 {
-        mesh.points.push(mesh.points[n - 3] + 0.5);
-        mesh.node_tags.push(n as u64 + 1);
-        mesh.blocks[0].nodes.push(crate::mesh::NodeId::new(n).unwrap());
+        parts.points.push(parts.points[n - 3] + 0.5);
+        parts.node_tags.push(n as u64 + 1);
+        parts.blocks[0].nodes.push(crate::mesh::NodeId::new(n).unwrap());
     }
+    let mesh = Mesh::new(parts).unwrap();
     let mut out = Vec::new();
     write(&mut out, &mesh, Version::V4_1, Encoding::Ascii).unwrap();
     let again = parse(&out).unwrap();
-    assert_eq!(again.node_tags, [1, 2, 3, 5, 4, 6]);
+    assert_eq!(again.node_tags(), [1, 2, 3, 5, 4, 6]);
     assert!(String::from_utf8(out).unwrap().contains("\n$Nodes\n4 6 1 6\n"));
 }
 
 #[test]
 fn version_2_2_refuses_numbers_beyond_its_own() {
-    let mut mesh = parse([HEAD, NODES, ELEMENTS].concat().as_bytes()).unwrap();
-    mesh.node_tags[0] = 1 << 31;
+    let mut parts = parse([HEAD, NODES, ELEMENTS].concat().as_bytes()).unwrap().into_parts();
+    parts.node_tags[0] = 1 << 31;
+    let mesh = Mesh::new(parts).unwrap();
     let refused = write(&mut Vec::new(), &mesh, Version::V2_2, Encoding::Binary);
     assert!(matches!(refused, Err(Unwritten::Inexpressible(reason)) if reason.contains("write version 4.1")));
 }

@@ -82,7 +82,7 @@ impl<'a> Fit<'_, 'a> {
                 let Some(&face) = self.boundary().edge_faces[edge].first() else { return ends.to_vec() };
                 let nodes = of_face(face);
                 let own = |slots: &&Vec<usize>| ends.iter().all(|end| slots[..2].iter().any(|&s| nodes[s] == *end));
-                let slots = edge_nodes(self.boundary().faces[face].cell, mesh.order).iter().find(own);
+                let slots = edge_nodes(self.boundary().faces[face].cell, mesh.order()).iter().find(own);
                 slots.map_or(ends.to_vec(), |slots| slots.iter().map(|&s| nodes[s]).collect())
             }
         }

@@ -77,7 +77,7 @@ const NO_DIRECTION: f64 = 1e-9;
 /// Lets nodes of wall edges slide where that takes the wall nearer to the CAD; nodes of periodic pairs stay.
 pub fn fit(level: &mut Level) {
     let tables =
-        [Cell::Line, Cell::Triangle, Cell::Quad].map(|cell| (cell, Table::new(cell, level.elevated.mesh.order)));
+        [Cell::Line, Cell::Triangle, Cell::Quad].map(|cell| (cell, Table::new(cell, level.elevated.mesh.order())));
     let start = level.wall.displacements();
     let paired = level.periodic.images().iter().flat_map(|image| [image.node, image.of]).collect();
     let mut fit = Fit { level, paired, start, tables: tables.into_iter().collect() };
