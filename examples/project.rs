@@ -7,8 +7,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let cad = Model::read("fixtures/torus/torus.step".as_ref(), &ReadOptions::default())?;
     let group = Group::of_faces(&cad, &[FaceId::new(0)])?;
     for x in [DVec3::new(1.2, 0.3, 0.4), DVec3::new(0.9, -0.2, 0.0)] {
-        let foot = group.closest(x, None);
-        println!("{x} -> {} at distance {:.6}, proven: {}", foot.point, foot.distance, foot.is_proven());
+        if let Some(foot) = group.closest(x, None) {
+            println!("{x} -> {} at distance {:.6}, proven: {}", foot.point, foot.distance, foot.is_proven());
+        }
     }
     Ok(())
 }

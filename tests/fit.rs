@@ -38,7 +38,7 @@ fn levels(level: &Level) -> BTreeMap<usize, f64> {
             let values = basis::values(face.cell, order, at);
             let x: DVec3 = nodes.iter().zip(values).map(|(n, v)| level.displaced(*n) * v).sum();
             let farthest = levels.entry(surface).or_insert(0.0_f64);
-            *farthest = farthest.max(association.surfaces[surface].group.closest(x, None).distance);
+            *farthest = farthest.max(association.surfaces[surface].group.distance(x));
         }
     }
     levels
@@ -70,8 +70,8 @@ impl Outcome {
         for (n, displacement) in level.wall.displacements().iter().enumerate().filter(|(n, d)| **d != start[*n]) {
             let size = level.wall.size(n).unwrap();
             let group = association.group_of(level.wall.classification(n)).expect("a node that slides is on the CAD");
-            let off = group.closest(level.straight()[n] + *displacement, None);
-            assert!(off.distance < 1e-7 * size, "{case} P{order}: node {n} is {:e} off the CAD", off.distance);
+            let off = group.distance(level.straight()[n] + *displacement);
+            assert!(off < 1e-7 * size, "{case} P{order}: node {n} is {off:e} off the CAD");
             assert!(n >= level.elevated.linear_nodes, "{case} P{order}: linear node {n} has slid");
             slid = slid.max(displacement.distance(start[n]) / size);
         }

@@ -31,7 +31,7 @@ fn sampled(model: &Model, faces: &[FaceId], inside: &dyn Fn(FaceId, DVec3) -> bo
 fn check(group: &Group, model: &Model, foot: &Foot, x: DVec3) {
     assert!((foot.point.distance(x) - foot.distance).abs() <= 1e-15 * model.diagonal());
     if !matches!(foot.end, End::OnTrim(_) | End::OnEnd(_)) {
-        let again = group.evaluate(foot.entity, foot.parameters).unwrap().point();
+        let again = group.evaluate_at(foot).unwrap().point();
         assert!(again == foot.point, "the foot is OCCT's own point");
     }
     assert!(!matches!(foot.end, End::Stalled { .. }), "{foot:?} from {x}");
@@ -60,7 +60,7 @@ fn torus_by_analysis() {
             let height = flat[axis];
             flat[axis] = 0.0;
             let expected = ((flat.length() - major).hypot(height) - minor).abs();
-            let foot = group.closest(x, None);
+            let foot = group.closest(x, None).unwrap();
             check(&group, &model, &foot, x);
             assert!((foot.distance - expected).abs() < 1e-3 * minor, "{x}: {} against {expected}", foot.distance);
             assert!(foot.is_proven());
@@ -76,11 +76,11 @@ fn feet_are_not_farther_than_samples() {
         for face in model.faces() {
             let group = Group::of_faces(&model, &[face.id]).unwrap();
             let margin = 0.2 * (face.bounds.max - face.bounds.min) + 0.01 * model.diagonal();
-            let on = |_: FaceId, p: DVec3| group.closest(p, None).distance < 1e-9 * model.diagonal();
+            let on = |_: FaceId, p: DVec3| group.distance(p) < 1e-9 * model.diagonal();
             let mut unproven = 0;
             for _ in 0..40 {
                 let x = random.in_box(face.bounds.min - margin, face.bounds.max + margin);
-                let foot = group.closest(x, None);
+                let foot = group.closest(x, None).unwrap();
                 check(&group, &model, &foot, x);
                 unproven += usize::from(!foot.is_proven());
                 let best = sampled(&model, &[face.id], &on, 30, x);
@@ -109,7 +109,7 @@ fn points_on_the_surface_are_their_own_feet() {
                 let Evaluation::Surface(s) = model.evaluate(face.id.into(), [at(u, i), at(v, j)]).unwrap() else {
                     panic!()
                 };
-                let foot = group.closest(s.point, None);
+                let foot = group.closest(s.point, None).unwrap();
                 assert!(foot.distance < 1e-11 * model.diagonal(), "{} {} {}: {foot:?}", face.id, i, j);
             }
         }
@@ -124,8 +124,8 @@ fn a_group_is_the_nearest_of_its_faces() {
     let mut random = Random(11);
     for _ in 0..200 {
         let x = random.in_box(model.bounds().min, model.bounds().max);
-        let best = single.iter().map(|g| g.closest(x, None).distance).fold(f64::INFINITY, f64::min);
-        let foot = group.closest(x, None);
+        let best = single.iter().map(|g| g.distance(x)).fold(f64::INFINITY, f64::min);
+        let foot = group.closest(x, None).unwrap();
         assert!((foot.distance - best).abs() < 1e-11 * model.diagonal());
     }
 }
@@ -139,7 +139,7 @@ fn edges_against_samples_and_ends() {
         let margin = DVec3::splat(0.05 * model.diagonal());
         for _ in 0..20 {
             let x = random.in_box(edge.bounds.min - margin, edge.bounds.max + margin);
-            let foot = group.closest(x, None);
+            let foot = group.closest(x, None).unwrap();
             check(&group, &model, &foot, x);
             let [a, b] = edge.parameters;
             let best = (0..=400)
@@ -155,7 +155,7 @@ fn edges_against_samples_and_ends() {
             assert!(foot.is_proven(), "{}", edge.id);
         }
         let group = Group::of_vertices(&model, &edge.ends.map(Option::unwrap)).unwrap();
-        let foot = group.closest(edge.bounds.center(), None);
+        let foot = group.closest(edge.bounds.center(), None).unwrap();
         assert!(matches!((foot.end, foot.entity), (End::OnEnd(_), EntityId::Vertex(_))));
     }
 }
@@ -168,7 +168,7 @@ fn step_and_iges_give_the_same_feet() {
         let mut random = Random(17);
         for _ in 0..300 {
             let x = random.in_box(step.bounds().min, step.bounds().max);
-            let (foot, other) = (a.closest(x, None), b.closest(x, None));
+            let (foot, other) = (a.closest(x, None).unwrap(), b.closest(x, None).unwrap());
             assert!((foot.distance - other.distance).abs() < 1e-7 * step.diagonal(), "{case} {x}: {foot:?} {other:?}");
         }
     }
@@ -186,7 +186,7 @@ fn a_hint_is_never_wrong_along_a_walk() {
         let mut hint = Hint::default();
         let step = model.diagonal() * 10.0_f64.powf(-1.0 - 4.0 * random.unit());
         for k in 0..25 {
-            let (plain, hinted) = (group.closest(x, None), group.closest(x, Some(&mut hint)));
+            let (plain, hinted) = (group.closest(x, None).unwrap(), group.closest(x, Some(&mut hint)).unwrap());
             let off = (plain.distance - hinted.distance).abs();
             assert!(off < 1e-12 * model.diagonal(), "walk {walk}, step {k}, {x}: {plain:?} {hinted:?}");
             differ += usize::from(plain.is_proven() != hinted.is_proven());
@@ -197,20 +197,33 @@ fn a_hint_is_never_wrong_along_a_walk() {
 }
 
 #[test]
+fn points_beyond_all_measure_have_no_foot() {
+    let model = fixture("torus/torus.step");
+    let group = all_faces(&model);
+    for x in [DVec3::NAN, DVec3::INFINITY, DVec3::new(0.0, f64::NAN, 0.0), DVec3::splat(1e200)] {
+        let mut hint = Hint::default();
+        assert_eq!(group.closest(x, None), None, "{x}");
+        assert_eq!(group.closest(x, Some(&mut hint)), None, "{x}");
+        assert_eq!(group.distance(x), f64::INFINITY, "{x}");
+        assert!(group.closest(DVec3::X, Some(&mut hint)).is_some_and(|foot| foot.is_proven()), "after {x}");
+    }
+}
+
+#[test]
 fn threads_and_hints_change_nothing() {
     let model = fixture("wing_sharp/wing_sharp.step");
     let group = all_faces(&model);
     let mut random = Random(23);
     let xs: Vec<DVec3> = (0..2000).map(|_| random.in_box(model.bounds().min, model.bounds().max)).collect();
-    let serial: Vec<Foot> = xs.iter().map(|&x| group.closest(x, None)).collect();
+    let serial: Vec<Option<Foot>> = xs.iter().map(|&x| group.closest(x, None)).collect();
     for threads in [1, 2, 7] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         assert_eq!(pool.install(|| group.closest_batch(&xs, &mut [])), serial, "{threads} threads");
     }
     let mut hint = Hint::default();
-    for (i, foot) in serial.iter().enumerate() {
-        group.closest(xs[(i * 7 + 1) % xs.len()], Some(&mut hint));
-        let hinted = group.closest(xs[i], Some(&mut hint));
+    for (i, foot) in serial.iter().flatten().enumerate() {
+        group.closest(xs[(i * 7 + 1) % xs.len()], Some(&mut hint)).unwrap();
+        let hinted = group.closest(xs[i], Some(&mut hint)).unwrap();
         assert!((hinted.distance - foot.distance).abs() < 1e-12 * model.diagonal(), "a hint made an answer wrong");
     }
 }

@@ -42,10 +42,10 @@ fn step_and_iges_of_a_blade_are_one_shape_once_the_unit_is_right() {
     let diagonal = right.diagonal();
     let (mut apart, mut moved, mut count) = (0.0_f64, 0.0_f64, 0);
     for k in 0..6000 {
-        let near = a.closest(random.in_box(bounds.min, bounds.max), None).point;
+        let near = a.closest(random.in_box(bounds.min, bounds.max), None).unwrap().point;
         let reach = [1e-6, 1e-4, 0.01, 0.3][k % 4] * diagonal;
         let x = near + reach * (random.in_box(-DVec3::ONE, DVec3::ONE));
-        let [one, other]: [Foot; 2] = [a.closest(x, None), b.closest(x, None)];
+        let [one, other]: [Foot; 2] = [a.closest(x, None).unwrap(), b.closest(x, None).unwrap()];
         apart = apart.max((one.distance - other.distance).abs() / diagonal);
         // at equal distances from two places either is right
         if k % 4 < 2 {

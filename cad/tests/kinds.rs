@@ -60,7 +60,7 @@ fn elementary_surfaces_by_analysis() {
         let id = FaceId::new(index);
         let group = Group::of_faces(&model, &[id]).unwrap();
         for x in around(&model, id, 400, &mut random) {
-            let foot = group.closest(x, None);
+            let foot = group.closest(x, None).unwrap();
             let excess = (foot.distance - distance(x)).abs();
             assert!(excess < 1e-11 * model.diagonal(), "{id} at {x}: {foot:?}, expected {}", distance(x));
             assert!(foot.is_proven() && !matches!(foot.end, End::Stalled { .. }), "{foot:?}");
@@ -83,7 +83,7 @@ fn all_kinds_against_occt_and_samples() {
                 continue; // OCCT 7.6 does not see a hole that is written a period away
             }
             for x in around(&model, face.id, 25, &mut random) {
-                let foot = group.closest(x, None);
+                let foot = group.closest(x, None).unwrap();
                 let theirs = oracle.extrema(x.x, x.y, x.z, &mut [0.0; 3]).unwrap();
                 let excess = foot.distance - theirs;
                 assert!(excess < 1e-9 * model.diagonal(), "{name} {} at {x}: {foot:?}, OCCT {theirs}", face.id);
@@ -106,7 +106,7 @@ fn feet_on_offset_surfaces_are_proven_from_afar() {
         let reach = DVec3::splat(face.bounds.diagonal());
         for _ in 0..200 {
             let x = random.in_box(face.bounds.min - reach, face.bounds.max + reach);
-            let foot = group.closest(x, None);
+            let foot = group.closest(x, None).unwrap();
             assert!(foot.is_proven(), "{} at {x}: {foot:?}", face.id);
         }
     }
@@ -119,10 +119,10 @@ fn a_hole_a_period_away_is_a_hole() {
     let face = model.face(FaceId::new(12)).unwrap();
     let group = Group::of_faces(&model, &[face.id]).unwrap();
     let middle = model.evaluate(face.id.into(), [1.5, 0.5]).unwrap().point();
-    let foot = group.closest(middle, None);
+    let foot = group.closest(middle, None).unwrap();
     assert!(matches!(foot.end, End::OnTrim(_)) && foot.distance > 0.5, "{foot:?}");
     let beside = model.evaluate(face.id.into(), [4.0, 0.5]).unwrap().point();
-    assert!(group.closest(beside, None).distance < 1e-12);
+    assert!(group.distance(beside) < 1e-12);
 }
 
 #[test]
@@ -157,7 +157,7 @@ fn free_curves(model: &Model) {
         assert!(edge.faces.is_empty() && !edge.label.reference.is_empty(), "{edge:?}");
         for _ in 0..50 {
             let x = random.in_box(model.bounds().min, model.bounds().max);
-            let foot = group.closest(x, None);
+            let foot = group.closest(x, None).unwrap();
             let best = sampled_edge(model, edge.id, x);
             assert!(foot.distance <= best + 1e-12 && foot.is_proven(), "{} at {x}: {foot:?} against {best}", edge.id);
         }
@@ -219,15 +219,15 @@ fn hints_are_never_wrong_on_any_kind() {
     let xs: Vec<DVec3> = (0..500).map(|_| random.in_box(model.bounds().min, model.bounds().max)).collect();
     let mut hint = Hint::default();
     for (i, &x) in xs.iter().enumerate() {
-        let plain = group.closest(x, None);
-        let hinted = group.closest(x, Some(&mut hint));
+        let plain = group.closest(x, None).unwrap();
+        let hinted = group.closest(x, Some(&mut hint)).unwrap();
         assert!((plain.distance - hinted.distance).abs() < 1e-11 * model.diagonal(), "{i} {x}: {plain:?} {hinted:?}");
         // a walk of small moves: the chain of hints carries its clearance on
         let mut at = x;
         for _ in 0..4 {
             at += 1e-3 * model.diagonal() * (random.in_box(DVec3::ZERO, DVec3::ONE) - DVec3::splat(0.5));
-            let hinted = group.closest(at, Some(&mut hint));
-            let plain = group.closest(at, None).distance;
+            let hinted = group.closest(at, Some(&mut hint)).unwrap();
+            let plain = group.distance(at);
             assert!((plain - hinted.distance).abs() < 1e-11 * model.diagonal(), "{i} {at}: {plain} {hinted:?}");
         }
     }

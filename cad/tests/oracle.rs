@@ -137,7 +137,7 @@ fn ask(model: &Model, group: &Group, judges: &mut [Judge], count: usize, tally: 
             break;
         }
         let x = query(model, judges[k % judges.len()].face, k, &mut random);
-        let ours = group.closest(x, None);
+        let ours = group.closest(x, None).unwrap();
         let mut best = [None::<f64>; 4];
         for judge in judges.iter_mut() {
             for (best, candidate) in best.iter_mut().zip(judge.candidates(x, &ours)) {

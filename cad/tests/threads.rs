@@ -9,11 +9,16 @@ use cad::{End, Evaluation, Foot, Group, Hint, Model};
 use common::{Random, fixture, shape};
 use glam::DVec3;
 
-fn bytes_of(feet: &[Foot]) -> Vec<u8> {
+fn bytes_of(feet: &[Option<Foot>]) -> Vec<u8> {
     let mut bytes = Vec::new();
-    for foot in feet {
+    for foot in feet.iter().flatten() {
         let residual = if let End::Stalled { residual } = foot.end { residual } else { 0.0 };
-        let numbers = foot.point.to_array().into_iter().chain(foot.parameters).chain([foot.distance, residual]);
+        let numbers = foot
+            .point
+            .to_array()
+            .into_iter()
+            .chain(foot.parameters.into_iter().flatten())
+            .chain([foot.distance, residual]);
         numbers.for_each(|number| bytes.extend(number.to_le_bytes()));
         bytes.extend(format!("{} {:?} {:?}", foot.entity, foot.end, foot.doubt).bytes());
     }
@@ -36,7 +41,7 @@ fn race(model: &Model, count: usize) {
             let mut hints = vec![Hint::default(); xs.len()];
             group.closest_batch(&xs, &mut hints);
             let hinted = group.closest_batch(&moved, &mut hints);
-            let at: Vec<_> = feet.iter().map(|foot| (foot.entity, foot.parameters)).collect();
+            let at: Vec<_> = feet.iter().flatten().filter_map(|foot| Some((foot.entity, foot.parameters?))).collect();
             let points = group.evaluate_batch(&at);
             let mut bytes = [bytes_of(&feet), bytes_of(&hinted)].concat();
             let jets =

@@ -123,7 +123,7 @@ impl Binder<'_> {
     /// The first CAD face that all the nodes lie on.
     fn face_that_holds(&self, nodes: &BTreeSet<NodeId>) -> Option<FaceId> {
         let on = |group: &Group, n: &NodeId| {
-            group.closest(self.mesh.points()[n.index()], None).distance <= ON_ENTITY * self.model.diagonal()
+            group.distance(self.mesh.points()[n.index()]) <= ON_ENTITY * self.model.diagonal()
         };
         let holds =
             |id: &FaceId| Group::of_faces(self.model, &[*id]).is_ok_and(|group| nodes.iter().all(|n| on(&group, n)));
@@ -140,9 +140,9 @@ impl Binder<'_> {
     ) -> Result<f64, AssociateError> {
         let nodes: Vec<NodeId> = nodes.iter().copied().collect();
         let places: Vec<DVec3> = nodes.iter().map(|n| self.mesh.points()[n.index()]).collect();
-        let feet = group.closest_batch(&places, &mut []);
-        let off = feet.iter().filter(|f| f.distance > self.limit).count();
-        let worst = (0..feet.len()).max_by(|&a, &b| feet[a].distance.total_cmp(&feet[b].distance));
+        let distances = group.distances(&places);
+        let off = distances.iter().filter(|&&distance| distance > self.limit).count();
+        let worst = (0..distances.len()).max_by(|&a, &b| distances[a].total_cmp(&distances[b]));
         let Some(worst) = worst else { return Ok(0.0) };
         if off > 0 {
             return Err(AssociateError::Off {
@@ -152,11 +152,11 @@ impl Binder<'_> {
                 of: nodes.len(),
                 node: self.mesh.node_tags()[nodes[worst].index()],
                 at: places[worst],
-                distance: feet[worst].distance,
+                distance: distances[worst],
                 limit: self.limit,
             });
         }
-        Ok(feet[worst].distance)
+        Ok(distances[worst])
     }
 
     fn bad_group<T>(&self, candidate: &Candidate<T>, cause: &dyn std::fmt::Display) -> AssociateError {
@@ -241,7 +241,7 @@ impl Binder<'_> {
             let nodes: BTreeSet<NodeId> = string.items.iter().flatten().copied().collect();
             if let Ok(group) = Group::of_edges(self.model, &ids) {
                 let places: Vec<DVec3> = nodes.iter().map(|n| self.mesh.points()[n.index()]).collect();
-                let farthest = group.closest_batch(&places, &mut []).iter().map(|f| f.distance).fold(0.0, f64::max);
+                let farthest = group.distances(&places).into_iter().fold(0.0, f64::max);
                 if farthest <= self.slack {
                     return Ok(Some(self.curve(ids, &string.label, group)));
                 }
@@ -316,7 +316,7 @@ impl Binder<'_> {
             let model = self.model;
             let single = self.singles.entry(*id).or_insert_with(|| Group::of_edges(model, &[*id]).ok());
             let Some(group) = single else { return false };
-            let near = |x: DVec3, limit: f64| group.closest(x, None).distance <= limit;
+            let near = |x: DVec3, limit: f64| group.distance(x) <= limit;
             near(a, slack) && near(b, slack) && near(0.5 * (a + b), 0.5 * a.distance(b))
         };
         let found: BTreeSet<EdgeId> = nearby.into_iter().filter(holds).collect();

@@ -103,7 +103,7 @@ impl<'a> Joints<'a> {
     fn into(&self, face: FaceId, at: DVec3, tangent: DVec3, step: f64) -> Option<DVec3> {
         let group = self.face(face)?;
         let along = normal_at(group, at)?.cross(tangent).try_normalize()?;
-        let off = |way: DVec3| group.closest(at + way * step, None).distance;
+        let off = |way: DVec3| group.distance(at + way * step);
         Some(if off(along) <= off(-along) { along } else { -along })
     }
 }
@@ -111,8 +111,8 @@ impl<'a> Joints<'a> {
 /// The normal of a group's surface at its point closest to `x`; `None` at poles, and where the closest point has no surface.
 #[must_use]
 pub fn normal_at(group: &Group, x: DVec3) -> Option<DVec3> {
-    let foot = group.closest(x, None);
-    match (foot.entity, group.evaluate(foot.entity, foot.parameters)?) {
+    let foot = group.closest(x, None)?;
+    match (foot.entity, group.evaluate_at(&foot)?) {
         (EntityId::Face(_), Evaluation::Surface(point)) => point.normal,
         _ => None,
     }

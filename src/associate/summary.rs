@@ -142,8 +142,7 @@ fn farthest_by_patch(
     }
     for (entity, nodes) in nodes {
         let positions: Vec<DVec3> = nodes.iter().map(|n| mesh.points()[n.index()]).collect();
-        let feet = group.closest_batch(&positions, &mut []);
-        farthest.insert(entity, feet.iter().map(|foot| foot.distance).fold(0.0, f64::max));
+        farthest.insert(entity, group.distances(&positions).into_iter().fold(0.0, f64::max));
     }
     farthest
 }

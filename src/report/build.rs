@@ -151,7 +151,7 @@ fn distance(curved: &Curved, face: usize) -> Option<f64> {
     let far = samples.points()[..samples.count()].iter().map(|&at| {
         let values = basis::values(cell, order, at);
         let x: DVec3 = nodes.iter().zip(values).map(|(n, v)| curved.mesh.points()[n.index()] * v).sum();
-        group.closest(x, None).distance
+        group.distance(x)
     });
     far.reduce(f64::max)
 }

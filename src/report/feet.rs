@@ -96,7 +96,8 @@ pub fn end_of(foot: &Foot) -> &'static str {
 impl FeetReport {
     /// Counts; the caller fills in the notes.
     #[must_use]
-    pub fn new(cad: CadReport, group: &[String], entities: usize, feet: &[Foot], seconds: f64) -> FeetReport {
+    pub fn new(cad: CadReport, group: &[String], entities: usize, feet: &[Option<Foot>], seconds: f64) -> FeetReport {
+        let found = || feet.iter().flatten();
         let mut report = FeetReport {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
@@ -104,12 +105,12 @@ impl FeetReport {
             group: group.to_vec(),
             entities,
             points: feet.len(),
-            proven: feet.iter().filter(|foot| foot.is_proven()).count(),
+            proven: found().filter(|foot| foot.is_proven()).count(),
             unproven: 0,
             unproven_by_reason: BTreeMap::new(),
             feet_by_end: BTreeMap::new(),
             feet_by_entity: BTreeMap::new(),
-            mean_distance: feet.iter().map(|foot| foot.distance).sum::<f64>() / feet.len().max(1) as f64,
+            mean_distance: found().map(|foot| foot.distance).sum::<f64>() / found().count().max(1) as f64,
             farthest: None,
             notes: Vec::new(),
             seconds,
@@ -117,6 +118,10 @@ impl FeetReport {
         };
         report.unproven = report.points - report.proven;
         for (i, foot) in feet.iter().enumerate() {
+            let Some(foot) = foot else {
+                *report.unproven_by_reason.entry("no foot: the point is too far away".to_owned()).or_default() += 1;
+                continue;
+            };
             *report.feet_by_end.entry(end_of(foot)).or_default() += 1;
             *report.feet_by_entity.entry(foot.entity.to_string()).or_default() += 1;
             if let Some(doubt) = foot.doubt {

@@ -147,16 +147,16 @@ impl Ruler<'_> {
         let entities = self.geometry.of(target);
         let group = group(self.model, &entities)?.ok()?;
         let positions: Vec<DVec3> = nodes.iter().map(|n| self.linked.mesh.points()[n.index()]).collect();
-        let feet = group.closest_batch(&positions, &mut []);
-        let worst = (0..feet.len()).max_by(|&a, &b| feet[a].distance.total_cmp(&feet[b].distance))?;
+        let distances = group.distances(&positions);
+        let worst = (0..distances.len()).max_by(|&a, &b| distances[a].total_cmp(&distances[b]))?;
         let cad = entities.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
-        let off_cad = feet.iter().filter(|foot| foot.distance > self.tolerance).count();
+        let off_cad = distances.iter().filter(|&&distance| distance > self.tolerance).count();
         let measured = Measured {
             name: name.to_owned(),
             cad,
             points: nodes.len(),
             off_cad,
-            cad_distance_max: feet[worst].distance,
+            cad_distance_max: distances[worst],
             node: self.linked.tag(nodes[worst]),
             position: positions[worst].to_array(),
             line: origin.position().map(|position| position.line.get()),

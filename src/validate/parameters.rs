@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use cad::{EntityId, Foot, Model};
+use cad::{EntityId, Model};
 use glam::DVec3;
 use linkage_schema::{Code, Findings, GeometryId, ModelLinks, Origin, ParamVertex, Parameters, VertexRef};
 
@@ -82,13 +82,13 @@ fn misplaced<'a, 'b>(
     let group = group(model, &[entity])?.ok()?;
     // A point off the CAD is reported otherwise, and has no parameters.
     let on_entity = |vertex: &'b Vertex<'a>| {
-        let foot = group.closest(vertex.place, None);
-        (foot.distance <= tolerance).then_some((vertex, foot))
+        let foot = group.closest(vertex.place, None).filter(|foot| foot.distance <= tolerance)?;
+        Some((vertex, foot.parameters))
     };
-    let (vertices, feet): (Vec<&Vertex<'a>>, Vec<Foot>) = vertices.iter().filter_map(on_entity).unzip();
+    let (vertices, own): (Vec<&Vertex<'a>>, Vec<Option<[f64; 2]>>) = vertices.iter().filter_map(on_entity).unzip();
     let same = |given: [f64; 2]| given;
     judge(&vertices, entity, model, tolerance, &same).or_else(|| {
-        let maps = [fit(&vertices, &feet, 0)?, fit(&vertices, &feet, 1)?];
+        let maps = [fit(&vertices, &own, 0)?, fit(&vertices, &own, 1)?];
         let moved = |given: [f64; 2]| std::array::from_fn(|axis| maps[axis][0] * given[axis] + maps[axis][1]);
         judge(&vertices, entity, model, tolerance, &moved)
     })
@@ -112,10 +112,10 @@ fn judge<'a>(
     ((wrong.len() as f64) <= (1.0 - MATCH) * vertices.len() as f64).then_some(wrong)
 }
 
-/// Factor and offset that take most given parameters of one axis to those of the feet: medians over pairs.
-fn fit(vertices: &[&Vertex<'_>], feet: &[Foot], axis: usize) -> Option<[f64; 2]> {
-    let pairs: Vec<[f64; 2]> =
-        vertices.iter().zip(feet).map(|(vertex, foot)| [vertex.given[axis], foot.parameters[axis]]).collect();
+/// Factor and offset that take most given parameters of one axis to the CAD's own: medians over pairs.
+fn fit(vertices: &[&Vertex<'_>], own: &[Option<[f64; 2]>], axis: usize) -> Option<[f64; 2]> {
+    let pair = |(vertex, own): (&&Vertex<'_>, &Option<[f64; 2]>)| Some([vertex.given[axis], own.as_ref()?[axis]]);
+    let pairs: Vec<[f64; 2]> = vertices.iter().zip(own).filter_map(pair).collect();
     if pairs.len() < ENOUGH {
         return None;
     }

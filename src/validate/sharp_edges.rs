@@ -100,7 +100,7 @@ fn crosses(
     sharp.iter().any(|&edge| {
         let &[a, b] = joints.faces_of(edge) else { return false };
         let only = |own: FaceId, other: FaceId| (0..count).any(|n| on(n, own) && !on(n, other));
-        let near = || Group::of_edges(model, &[edge]).is_ok_and(|g| g.closest(side.middle, None).distance <= side.size);
+        let near = || Group::of_edges(model, &[edge]).is_ok_and(|g| g.distance(side.middle) <= side.size);
         only(a, b) && only(b, a) && near()
     })
 }

@@ -111,12 +111,12 @@ pub(super) fn check(
 /// otherwise, or the surface has no normal.
 fn meeting(linked: &LinkedMesh<'_>, face: usize, group: &Group, tolerance: f64) -> Option<(FaceId, f64)> {
     let corners = linked.mesh.points_of(&linked.boundary.corners[face]);
-    if corners.into_iter().any(|x| group.closest(x, None).distance > tolerance) {
+    if corners.into_iter().any(|x| group.distance(x) > tolerance) {
         return None;
     }
     let side = &linked.sides[face];
-    let foot = group.closest(side.middle, None);
-    match (foot.entity, group.evaluate(foot.entity, foot.parameters)?) {
+    let foot = group.closest(side.middle, None)?;
+    match (foot.entity, group.evaluate_at(&foot)?) {
         (EntityId::Face(id), Evaluation::Surface(point)) => Some((id, point.normal?.dot(side.normal))),
         _ => None,
     }

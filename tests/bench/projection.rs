@@ -6,7 +6,7 @@
 #[path = "../common/iges.rs"]
 mod iges;
 
-use cad::{FaceId, Group, Hint, Kind, Model, ReadOptions};
+use cad::{FaceId, Foot, Group, Hint, Kind, Model, ReadOptions};
 use glam::DVec3;
 use iges::Patch;
 use opencascade_sys as sys;
@@ -101,6 +101,10 @@ fn queries(model: &Model, faces: &[FaceId], count: usize, reach: f64) -> Vec<DVe
     (0..count).map(point).collect()
 }
 
+fn distances(feet: &[Option<Foot>]) -> impl Iterator<Item = f64> {
+    feet.iter().map(|foot| foot.map_or(f64::INFINITY, |foot| foot.distance))
+}
+
 /// Runs a method over all points, chunk by chunk; the rate if every chunk took the best of its times.
 fn rate<T>(count: usize, mut run: impl FnMut(Range<usize>) -> Vec<T>) -> (f64, Vec<T>) {
     let chunks: Vec<Range<usize>> = (0..count).step_by(CHUNK).map(|at| at..(at + CHUNK).min(count)).collect();
@@ -166,7 +170,7 @@ fn compare(
     // a later sweep of the smoother: every point has moved a little, in any direction
     let mut random = Random(2);
     let mut shake = || 2.0 * random.unit() - 1.0;
-    let moves = feet.iter().map(|foot| 0.02 * foot.distance * DVec3::new(shake(), shake(), shake()));
+    let moves = distances(&feet).map(|distance| 0.02 * distance * DVec3::new(shake(), shake(), shake()));
     let moved: Vec<DVec3> = xs.iter().zip(moves).map(|(x, by)| *x + by).collect();
     // there and back: each run has the hints of the one before
     let mut there = false;
@@ -176,16 +180,16 @@ fn compare(
         one.install(|| group.closest_batch(at, &mut hints[r]))
     });
     let afresh = two.install(|| group.closest_batch(if there { &moved } else { xs }, &mut []));
-    let afresh: Vec<f64> = afresh.iter().map(|foot| foot.distance).collect();
-    let misled = wrong(carried.iter().map(|foot| foot.distance), &afresh, diagonal);
+    let afresh: Vec<f64> = distances(&afresh).collect();
+    let misled = wrong(distances(&carried), &afresh, diagonal);
     let (bare, quick) = rate(xs.len(), |r| xs[r].iter().map(|&x| group.closest_without_proof(x)).collect());
     let some = &xs[..case.global.min(xs.len())];
     let start = Instant::now();
     let theirs: Vec<f64> = some.iter().map(|&x| occt(oracles, x)).collect();
     let global = some.len() as f64 / start.elapsed().as_secs_f64();
-    let best: Vec<f64> = feet.iter().zip(&quick).map(|(a, b)| a.distance.min(b.distance)).collect();
+    let best: Vec<f64> = distances(&feet).zip(distances(&quick)).map(|(a, b)| a.min(b)).collect();
     let best_of_all: Vec<f64> = best.iter().zip(&theirs).map(|(a, b)| a.min(*b)).collect();
-    let unproven = feet.iter().filter(|foot| !foot.is_proven()).count();
+    let unproven = feet.iter().flatten().filter(|foot| !foot.is_proven()).count();
     println!("  {name:4} ours {ours:9.3e}/s, {unproven} of {} not proven", xs.len());
     println!(
         "       hinted {hinted:9.3e}/s = {:.2} x, {misled} wrong; two threads {:.2} x one",
@@ -201,9 +205,9 @@ fn compare(
     all.extend_from_slice(&best[best_of_all.len()..]);
     println!(
         "       wrong: ours {} of {}, seed + Newton {} of {}, OCCT {} of {}",
-        wrong(feet.iter().map(|foot| foot.distance), &all, diagonal),
+        wrong(distances(&feet), &all, diagonal),
         xs.len(),
-        wrong(quick.iter().map(|foot| foot.distance), &all, diagonal),
+        wrong(distances(&quick), &all, diagonal),
         xs.len(),
         wrong(theirs.iter().copied(), &best_of_all, diagonal),
         some.len()
@@ -220,7 +224,7 @@ fn weeble() {
     let xs = queries(&model, &faces, 100_000, 0.005);
     let start = Instant::now();
     let feet = group.closest_batch(&xs, &mut []);
-    let unproven = feet.iter().filter(|foot| !foot.is_proven()).count();
+    let unproven = feet.iter().flatten().filter(|foot| !foot.is_proven()).count();
     let seconds = start.elapsed().as_secs_f64();
     println!(
         "weeble's torus group: 1e5 points in {seconds:.3} s on {} threads, {unproven} not proven",

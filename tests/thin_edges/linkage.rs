@@ -112,7 +112,7 @@ fn project(section: &Section, folder: &Path) -> (usize, usize) {
         numbers.dedup();
         nodes += numbers.len();
         let place = |n: usize| level.displaced(NodeId::new(n).unwrap());
-        let off = |n: &&usize| own.closest(place(**n), None).distance > 1e-9 * model.diagonal();
+        let off = |n: &&usize| own.distance(place(**n)) > 1e-9 * model.diagonal();
         astray += numbers.iter().filter(off).count();
     }
     (nodes, astray)

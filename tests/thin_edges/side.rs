@@ -1,7 +1,7 @@
 //! One side of a thin body, triangulated coarsely, and its chord points.
 #![allow(unreachable_pub)]
 
-use cad::{FaceId, Group, Model};
+use cad::{FaceId, Foot, Group, Model};
 use glam::DVec3;
 
 /// Share of an edge's length by which a right foot may be away from the point of the surface half way in parameters.
@@ -95,7 +95,8 @@ impl<'a> Side<'a> {
         let one = Group::of_faces(self.model, sides).unwrap();
         let points = self.chord_points(p);
         let xs: Vec<DVec3> = points.iter().map(|chord| chord.point).collect();
-        let (right, mixed) = (own.closest_batch(&xs, &mut []), one.closest_batch(&xs, &mut []));
+        let [right, mixed] =
+            [&own, &one].map(|group| xs.iter().map(|&x| group.closest(x, None).unwrap()).collect::<Vec<Foot>>());
         let mut tally = Tally { points: points.len(), ..Tally::default() };
         for ((chord, right), mixed) in points.iter().zip(&right).zip(&mixed) {
             let at_home = right.point.distance(chord.home) < NEAR * chord.size;

@@ -1,7 +1,7 @@
 //! The end of a search: the winner on OCCT's own geometry, polished, and how it ended.
 
 use crate::boxes::Branch;
-use crate::closest::foot::{Doubt, End, Foot};
+use crate::closest::foot::{End, Foot};
 use crate::closest::group::Member;
 use crate::closest::hint::{Hint, Leeways};
 use crate::closest::search::{Best, Search};
@@ -32,11 +32,12 @@ pub(crate) struct Landing {
 }
 
 impl Search<'_> {
-    /// The winner, evaluated by OCCT.
-    pub(crate) fn finish(&self) -> Landing {
-        let Some(best) = self.best else { return self.nowhere() };
-        let landing = self.finish_at(best);
-        self.within_tolerance(best, &landing.foot).unwrap_or(landing)
+    /// The winner, evaluated by OCCT; `None` where there is none, or OCCT cannot.
+    pub(crate) fn finish(&self) -> Option<Landing> {
+        let best = self.best?;
+        let landing = self.finish_at(best)?;
+        let landing = self.within_tolerance(best, &landing.foot).unwrap_or(landing);
+        landing.foot.distance.is_finite().then_some(landing)
     }
 
     /// A nearer minimum on the surface that is outside the trim by no more than the tolerance of the edge or vertex beside it is a point of
@@ -57,10 +58,10 @@ impl Search<'_> {
         });
         let (outside, face, point) =
             within.min_by(|(a, ..), (b, ..)| a.distance.total_cmp(&b.distance).then(a.member.cmp(&b.member)))?;
-        Some(self.land_beside(best, face.into(), outside.parameters, point, foot.end))
+        Some(self.land_beside(best, face.into(), Some(outside.parameters), point, foot.end))
     }
 
-    fn finish_at(&self, best: Best) -> Landing {
+    fn finish_at(&self, best: Best) -> Option<Landing> {
         let geometry = &self.group.geometry;
         match self.group.members[best.member] {
             Member::Face { face, leaf } => {
@@ -76,56 +77,46 @@ impl Search<'_> {
                 }
                 let at_trim = matches!(end, End::Stalled { .. }) && leaf_geometry.crossed;
                 let slid = if at_trim { self.slide_to_trim(best, face as usize) } else { None };
-                slid.unwrap_or_else(|| {
-                    let mut landing = self.land(
-                        Best { parameters, ..best },
-                        FaceId::new(face as usize).into(),
-                        parameters,
-                        jet[0],
-                        end,
-                    );
+                Some(slid.unwrap_or_else(|| {
+                    let entity = FaceId::new(face as usize).into();
+                    let mut landing = self.land(Best { parameters, ..best }, entity, Some(parameters), jet[0], end);
                     if end == End::Interior && self.floors.is_some() {
                         landing.response = newton::response(&jet, self.x).map(|gradient| gradient.as_vec3());
                     }
                     landing
-                })
+                }))
             }
             Member::Edge { edge, owner, .. } => self.finish_edge(best, edge as usize, owner.map(|face| face as usize)),
             Member::Vertex { vertex, owner } => {
                 let id = VertexId::new(vertex as usize);
                 let (entity, parameters) = match owner {
                     Some(face) => (FaceId::new(face as usize).into(), geometry.corner_parameters(face as usize, id)),
-                    None => (id.into(), [0.0; 2]),
+                    None => (id.into(), Some([0.0; 2])),
                 };
-                self.land(best, entity, parameters, geometry.vertices[vertex as usize].0, End::OnEnd(id))
+                Some(self.land(best, entity, parameters, geometry.vertices[vertex as usize].0, End::OnEnd(id)))
             }
         }
     }
 
-    fn land(&self, best: Best, entity: EntityId, parameters: [f64; 2], point: DVec3, end: End) -> Landing {
+    fn land(&self, best: Best, entity: EntityId, parameters: Option<[f64; 2]>, point: DVec3, end: End) -> Landing {
         let foot = Foot { point, entity, parameters, distance: point.distance(self.x), end, doubt: self.doubt };
         Landing { foot, best, beside: false, response: [Vec3::ZERO; 2] }
     }
 
-    fn land_beside(&self, best: Best, entity: EntityId, parameters: [f64; 2], point: DVec3, end: End) -> Landing {
+    fn land_beside(
+        &self,
+        best: Best,
+        entity: EntityId,
+        parameters: Option<[f64; 2]>,
+        point: DVec3,
+        end: End,
+    ) -> Landing {
         Landing { beside: true, ..self.land(best, entity, parameters, point, end) }
-    }
-
-    fn nowhere(&self) -> Landing {
-        let best = Best { member: 0, parameters: [f64::NAN; 2], distance: f64::INFINITY };
-        let end = End::Stalled { residual: f64::INFINITY };
-        let mut landing = self.land_beside(best, self.group.entities()[0], best.parameters, DVec3::NAN, end);
-        landing.foot.distance = f64::INFINITY;
-        landing.foot.doubt = Some(Doubt::NotSearched);
-        landing
     }
 
     /// What the next query nearby should know.
     pub(crate) fn hint(&self, landing: &Landing) -> Hint {
-        let Landing { foot, best, response, .. } = landing;
-        if !foot.distance.is_finite() {
-            return Hint::default();
-        }
+        let Landing { best, response, .. } = landing;
         let leeways = self.leeways(landing);
         let leaf = best.member as u32;
         Hint { group: self.group.number, leaf, x: self.x, start: best.parameters, response: *response, leeways }
@@ -180,20 +171,20 @@ impl Search<'_> {
         let (distance, parameters, point, edge) = sides.min_by(|a, b| a.0.total_cmp(&b.0))?;
         let end = End::OnTrim(edge);
         (distance <= best.distance + self.tie())
-            .then(|| self.land_beside(best, FaceId::new(index).into(), parameters, point, end))
+            .then(|| self.land_beside(best, FaceId::new(index).into(), Some(parameters), point, end))
     }
 
-    fn finish_edge(&self, best: Best, index: usize, owner: Option<usize>) -> Landing {
+    fn finish_edge(&self, best: Best, index: usize, owner: Option<usize>) -> Option<Landing> {
         let geometry = &self.group.geometry;
         let id = EdgeId::new(index);
-        let Some(edge) = &geometry.edges[index] else { return self.nowhere() };
+        let edge = geometry.edges[index].as_ref()?;
         let (t, jet) = polish_curve(edge, self.x, best.parameters[0]);
         if let Some(face) = owner {
             let parameters = geometry.faces[face].parameters_on(index, edge.range, t, jet[0]);
             let corner = geometry.ends[index][usize::from(t >= edge.range[1])];
             let at_end = t <= edge.range[0] || t >= edge.range[1];
             let end = corner.filter(|_| at_end).map_or(End::OnTrim(id), End::OnEnd);
-            return self.land(best, FaceId::new(face).into(), parameters, jet[0], end);
+            return Some(self.land(best, FaceId::new(face).into(), parameters, jet[0], end));
         }
         let r = jet[0] - self.x;
         let residual = tangential(r, jet[1]);
@@ -208,7 +199,7 @@ impl Search<'_> {
             let at_knot = edge.leaves.iter().any(|leaf| leaf.range.contains(&t));
             if at_knot { End::OnCrease } else { End::Stalled { residual } }
         };
-        self.land(best, id.into(), [t, 0.0], jet[0], end)
+        Some(self.land(best, id.into(), Some([t, 0.0]), jet[0], end))
     }
 }
 
@@ -267,15 +258,17 @@ fn polish_curve(edge: &EdgeGeometry, x: DVec3, t: f64) -> (f64, [DVec3; 3]) {
 
 impl Geometry {
     /// Parameters on a face of one of its corners: the end of a pcurve there.
-    fn corner_parameters(&self, face: usize, vertex: VertexId) -> [f64; 2] {
+    fn corner_parameters(&self, face: usize, vertex: VertexId) -> Option<[f64; 2]> {
         let sides = self.faces[face].sides.iter().filter_map(|side| side.edge);
         let ends = sides.filter_map(|edge| {
             let end = self.ends[edge].iter().position(|&end| end == Some(vertex))?;
             Some((edge, self.edges[edge].as_ref()?.range, end))
         });
         let (point, _) = self.vertices[vertex.index()];
-        let parameters = ends.map(|(edge, range, end)| self.faces[face].parameters_on(edge, range, range[end], point));
-        parameters.into_iter().find(|p| p[0].is_finite()).unwrap_or([f64::NAN; 2])
+        let parameters = |(edge, range, end): (usize, [f64; 2], usize)| {
+            self.faces[face].parameters_on(edge, range, range[end], point)
+        };
+        ends.filter_map(parameters).find(|p| p[0].is_finite())
     }
 }
 
@@ -305,10 +298,11 @@ impl Side {
 }
 
 impl FaceGeometry {
-    /// Parameters on the surface of the point of a boundary edge at `t`; of the two sides of a seam, the first.
-    pub(crate) fn parameters_on(&self, edge: usize, range: [f64; 2], t: f64, point: DVec3) -> [f64; 2] {
+    /// Parameters on the surface of the point of a boundary edge at `t`; of the two sides of a seam, the first. `None` where the face has
+    /// no curve for that edge.
+    fn parameters_on(&self, edge: usize, range: [f64; 2], t: f64, point: DVec3) -> Option<[f64; 2]> {
         let sides = self.sides.iter().filter(|side| side.edge == Some(edge));
-        let mut best = ([f64::NAN; 2], f64::INFINITY);
+        let mut best = (None, f64::INFINITY);
         for side in sides {
             let fraction = (t - range[0]) / (range[1] - range[0]);
             let along = side.range[0] + fraction * (side.range[1] - side.range[0]);
@@ -318,7 +312,7 @@ impl FaceGeometry {
             }
             let distance = self.chart.d2(jet[0], jet[1])[0].distance(point);
             if best.1.is_infinite() || distance < 0.5 * best.1 {
-                best = ([jet[0], jet[1]], distance);
+                best = (Some([jet[0], jet[1]]), distance);
             }
         }
         best.0

@@ -11,9 +11,10 @@ pub struct Foot {
     /// The face, edge or vertex it lies on.
     pub entity: EntityId,
     /// OCCT's parameters on that entity: `u, v` of a face, `t, 0` of an edge, zeros of a vertex. For [`End::OnTrim`] they are those of
-    /// the edge's pcurve: the surface there differs from `point` by up to the edge's tolerance.
-    pub parameters: [f64; 2],
-    /// Distance from the query point to `point`.
+    /// the edge's pcurve: the surface there differs from `point` by up to the edge's tolerance. `None` at a boundary edge or corner for
+    /// which the file has no curve on the surface.
+    pub parameters: Option<[f64; 2]>,
+    /// Distance from the query point to `point`; finite.
     pub distance: f64,
     /// How the search ended.
     pub end: End,
@@ -36,7 +37,7 @@ pub enum Doubt {
     SampledHull,
     /// The search spent [`CUT_BUDGET`](crate::tolerance::CUT_BUDGET) before it had cut all that may be nearer.
     Budget,
-    /// The search was made without proof, or the query point is not finite.
+    /// The search was made without proof.
     NotSearched,
 }
 

@@ -189,17 +189,27 @@ impl Group {
 
     /// [`Group::closest`] for many points at once, on all threads of the current rayon pool. `hints` is empty or holds one a point.
     /// The answers do not depend on the number of threads.
-    pub fn closest_batch(&self, xs: &[DVec3], hints: &mut [Hint]) -> Vec<Foot> {
+    pub fn closest_batch(&self, xs: &[DVec3], hints: &mut [Hint]) -> Vec<Option<Foot>> {
         if hints.len() == xs.len() {
             return xs.par_iter().zip(hints).map(|(&x, hint)| self.closest(x, Some(hint))).collect();
         }
         xs.par_iter().map(|&x| self.closest(x, None)).collect()
     }
 
+    /// [`Group::distance`] for many points at once, on all threads of the current rayon pool.
+    pub fn distances(&self, xs: &[DVec3]) -> Vec<f64> {
+        xs.par_iter().map(|&x| self.distance(x)).collect()
+    }
+
     /// Point and derivatives of an entity of the model at OCCT's parameters, by OCCT. `None` where OCCT cannot evaluate, the entity
     /// does not exist, or is a degenerate edge.
     pub fn evaluate(&self, entity: EntityId, parameters: [f64; 2]) -> Option<Evaluation> {
         self.geometry.evaluate(entity, parameters)
+    }
+
+    /// Derivatives at a foot, by OCCT. `None` where it has no parameters, or OCCT cannot evaluate.
+    pub fn evaluate_at(&self, foot: &Foot) -> Option<Evaluation> {
+        self.evaluate(foot.entity, foot.parameters?)
     }
 
     /// [`Group::evaluate`] for many parameters at once, on all threads of the current rayon pool.

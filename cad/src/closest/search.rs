@@ -51,20 +51,26 @@ pub(crate) struct Search<'a> {
 }
 
 impl Group {
-    /// The closest point of the group to `x`, trims respected. A query point that is not finite gives a foot at infinite distance.
+    /// The closest point of the group to `x`, trims respected. `None` where `x` is not finite, or so far away that its squared distance is
+    /// not, and where OCCT cannot evaluate the point.
     ///
     /// Who asks again and again for a point that moves little passes the same `hint` each time: it makes queries faster, never wrong,
     /// and the first one a little slower.
-    pub fn closest(&self, x: DVec3, hint: Option<&mut Hint>) -> Foot {
+    pub fn closest(&self, x: DVec3, hint: Option<&mut Hint>) -> Option<Foot> {
         if let Some(hint) = hint {
             return self.closest_from(x, hint);
         }
         let mut search = Search::new(self, x);
         search.visit_all(self.seed(x));
-        search.finish().foot
+        search.finish().map(|landing| landing.foot)
     }
 
-    fn closest_from(&self, x: DVec3, hint: &mut Hint) -> Foot {
+    /// Distance of `x` from its closest point; infinite where [`Group::closest`] gives none.
+    pub fn distance(&self, x: DVec3) -> f64 {
+        self.closest(x, None).map_or(f64::INFINITY, |foot| foot.distance)
+    }
+
+    fn closest_from(&self, x: DVec3, hint: &mut Hint) -> Option<Foot> {
         let mut floors = Floors::new();
         let mut search = Search { floors: Some(&mut floors), ..Search::new(self, x) };
         if hint.group == self.number {
@@ -73,14 +79,14 @@ impl Group {
             search.visit_all(self.seed(x));
         }
         let landing = search.finish();
-        *hint = search.hint(&landing);
-        landing.foot
+        *hint = landing.as_ref().map_or_else(Hint::default, |landing| search.hint(landing));
+        landing.map(|landing| landing.foot)
     }
 
     /// The foot that Newton's method finds on the whole face or edge from the nearest sample: what a search without proof gives, for
     /// benchmarks. Where the group is trimmed, its answer may lie outside.
     #[doc(hidden)]
-    pub fn closest_without_proof(&self, x: DVec3) -> Foot {
+    pub fn closest_without_proof(&self, x: DVec3) -> Option<Foot> {
         let mut search = Search { doubt: Some(Doubt::NotSearched), ..Search::new(self, x) };
         let seed = self.seed(x);
         match self.members[seed] {
@@ -91,7 +97,7 @@ impl Group {
             }
             _ => search.visit(seed, None),
         }
-        search.finish().foot
+        search.finish().map(|landing| landing.foot)
     }
 }
 

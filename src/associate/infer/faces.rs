@@ -61,7 +61,7 @@ fn candidates(
     let common = at(0).iter().filter(|id| (1..corners.len()).all(|q| at(q).contains(id)));
     let fits = |&id: &FaceId| {
         let group = joints.face(id)?;
-        if group.closest(side.middle, None).distance > BULGE * side.size {
+        if group.distance(side.middle) > BULGE * side.size {
             return None;
         }
         let cosine = normal_at(group, side.middle).map(|normal| normal.dot(side.normal));

@@ -44,11 +44,11 @@ impl Incidence {
         let near = |x: DVec3, slack: f64| Aabb::of_points([x]).grown(slack);
         let at = |n: usize| {
             let (x, Some(slack)) = (mesh.points()[n], slack[n]) else { return Default::default() };
-            let holds = |&i: &usize| surfaces[i].1.closest(x, None).distance <= slack;
+            let holds = |&i: &usize| surfaces[i].1.distance(x) <= slack;
             let faces = surface_tree.overlapping(near(x, slack)).into_iter().filter(holds).map(|i| surfaces[i].0);
             let edges = curve_tree.overlapping(near(x, slack)).into_iter().filter_map(|i| {
-                let foot = curves[i].1.closest(x, None);
-                (foot.distance <= slack).then_some((curves[i].0, foot.parameters[0]))
+                let foot = curves[i].1.closest(x, None).filter(|foot| foot.distance <= slack)?;
+                Some((curves[i].0, foot.parameters?[0]))
             });
             (faces.collect(), edges.collect())
         };
@@ -83,8 +83,8 @@ impl Incidence {
                 let [(from, a), (to, b)] = [row[step], row[(step + 1) % row.len()]];
                 let Some(found) = boundary.edge([a, b]) else { continue };
                 let [a, b] = [a, b].map(|n| mesh.points()[n.index()]);
-                let foot = group.closest(0.5 * (a + b), None);
-                let t = foot.parameters[0];
+                let Some(foot) = group.closest(0.5 * (a + b), None) else { continue };
+                let Some([t, _]) = foot.parameters else { continue };
                 let between = if from < to { (from..=to).contains(&t) } else { t >= from || t <= to };
                 if between && foot.distance <= BULGE * a.distance(b) && !along[found].contains(&id) {
                     along[found].push(id);

@@ -94,7 +94,7 @@ fn only_smooth_group(
         }
         let faces: BTreeSet<FaceId> = corners.iter().flat_map(|n| of_smooth_group(n.index())).collect();
         let group = Group::of_faces(model, &faces.iter().copied().collect::<Vec<_>>()).ok()?;
-        let near = group.closest(side.middle, None).distance <= BULGE * side.size;
+        let near = group.distance(side.middle) <= BULGE * side.size;
         let runs_along = normal_at(&group, side.middle).is_none_or(|n| n.dot(side.normal).abs() >= ALONG);
         (near && runs_along).then_some((smooth_group, faces))
     };

@@ -1,8 +1,9 @@
 //! Lists of points and their feet on the CAD, as comma-separated values.
 
-use std::io::{self, BufRead, Write};
+use std::io::{Read, Write};
 
 use cad::Foot;
+use csv::{ByteRecord, Reader, ReaderBuilder, StringRecord, Terminator};
 use glam::DVec3;
 
 use crate::report::end_of;
@@ -11,50 +12,71 @@ use crate::report::end_of;
 const COORDINATES: [&str; 3] = ["x", "y", "z"];
 
 /// The columns that are written.
-const COLUMNS: &str = "foot_x,foot_y,foot_z,entity,u,v,distance,state";
+const COLUMNS: [&str; 8] = ["foot_x", "foot_y", "foot_z", "entity", "u", "v", "distance", "state"];
 
 /// What is wrong with a list of points.
 #[derive(Debug, thiserror::Error)]
 #[error("line {line}: {what}")]
 pub(super) struct Flaw {
-    line: usize,
+    line: u64,
     what: String,
-}
-
-/// The parts of a list, without spaces around them: commas between quotation marks separate nothing.
-pub(super) fn split(list: &str) -> Vec<&str> {
-    let mut quoted = false;
-    let outside = |c: char| {
-        quoted ^= c == '"';
-        c == ',' && !quoted
-    };
-    list.split(outside).map(str::trim).collect()
 }
 
 /// Reads the columns `x`, `y`, `z`, found by their names in the first line.
 ///
 /// # Errors
 /// Columns that are missing or stand there twice, no points, what is no finite number.
-pub(super) fn read(mut input: impl BufRead) -> Result<Vec<DVec3>, Flaw> {
-    let (mut bytes, mut columns, mut points) = (Vec::new(), None, Vec::new());
-    for line in 1.. {
-        let flaw = |what: String| Flaw { line, what };
-        bytes.clear();
-        let length = input.read_until(b'\n', &mut bytes).map_err(|error| flaw(error.to_string()))?;
-        let text = std::str::from_utf8(&bytes).map_err(|_| flaw("it is not text in UTF-8".into()))?;
-        let text = text.trim_start_matches('\u{feff}').trim();
-        match (&columns, length) {
-            (None, 0) => return Err(flaw("it is empty; give columns named x, y, z and a point a line".into())),
-            (Some(_), 0) if points.is_empty() => {
-                return Err(flaw("no points stand below the names of the columns".into()));
-            }
-            (Some(_), 0) => break,
-            _ if text.is_empty() => {}
-            (None, _) => columns = Some(Columns::new(text).map_err(flaw)?),
-            (Some(columns), _) => points.push(columns.point(text).map_err(flaw)?),
-        }
+pub(super) fn read(input: impl Read) -> Result<Vec<DVec3>, Flaw> {
+    let mut lines = Lines::new(input);
+    let empty = "it is empty; give columns named x, y, z and a point a line";
+    let columns = lines.next()?.ok_or_else(|| lines.flaw(empty.into()))?;
+    let columns = Columns::new(&columns).map_err(|what| lines.flaw(what))?;
+    let mut points = Vec::new();
+    while let Some(values) = lines.next()? {
+        points.push(columns.point(&values).map_err(|what| lines.flaw(what))?);
+    }
+    if points.is_empty() {
+        return Err(lines.flaw("no points stand below the names of the columns".into()));
     }
     Ok(points)
+}
+
+/// Lines that are not empty, with their numbers.
+struct Lines<R> {
+    reader: Reader<R>,
+    record: ByteRecord,
+}
+
+impl<R: Read> Lines<R> {
+    fn new(input: R) -> Lines<R> {
+        let mut builder = ReaderBuilder::new();
+        // '\r' is space at the end of a line, so that lines are counted by '\n' alone
+        builder.has_headers(false).flexible(true).terminator(Terminator::Any(b'\n'));
+        Lines { reader: builder.from_reader(input), record: ByteRecord::new() }
+    }
+
+    /// The values of the next line, without spaces around them.
+    fn next(&mut self) -> Result<Option<StringRecord>, Flaw> {
+        loop {
+            match self.reader.read_byte_record(&mut self.record) {
+                Err(error) => return Err(self.flaw(error.to_string())),
+                Ok(false) => return Ok(None),
+                Ok(true) => {}
+            }
+            let values = StringRecord::from_byte_record(self.record.clone());
+            let mut values = values.map_err(|_| self.flaw("it is not text in UTF-8".into()))?;
+            values.trim();
+            if values.len() > 1 || values.get(0).is_some_and(|value| !value.is_empty()) {
+                return Ok(Some(values));
+            }
+        }
+    }
+
+    /// The line that was read last; at the end of the file, the one that is missing.
+    fn flaw(&self, what: String) -> Flaw {
+        let behind = u64::from(!self.reader.is_done());
+        Flaw { line: self.reader.position().line() - behind, what }
+    }
 }
 
 /// Where the coordinates stand.
@@ -64,16 +86,16 @@ struct Columns {
 }
 
 impl Columns {
-    fn new(text: &str) -> Result<Columns, String> {
-        let names = split(text);
+    fn new(names: &StringRecord) -> Result<Columns, String> {
         let mut at = [0; 3];
         for (column, wanted) in at.iter_mut().zip(COORDINATES) {
-            let is = |i: &usize| names[*i].trim_matches('"').trim().eq_ignore_ascii_case(wanted);
+            let is = |i: &usize| unquoted(&names[*i]).eq_ignore_ascii_case(wanted);
             let mut found = (0..names.len()).filter(is);
             *column = match (found.next(), found.next()) {
                 (Some(only), None) => only,
                 (None, _) => {
-                    return Err(format!("no column is named {wanted}: {:?} are not the names x,y,z", shown(text)));
+                    let names = names.iter().collect::<Vec<_>>().join(",");
+                    return Err(format!("no column is named {wanted}: {:?} are not the names x,y,z", shown(&names)));
                 }
                 _ => return Err(format!("two columns are named {wanted}")),
             };
@@ -81,14 +103,13 @@ impl Columns {
         Ok(Columns { count: names.len(), at })
     }
 
-    fn point(&self, text: &str) -> Result<DVec3, String> {
-        let values = split(text);
+    fn point(&self, values: &StringRecord) -> Result<DVec3, String> {
         if values.len() != self.count {
             return Err(format!("{} columns, but {} are named in the first line", values.len(), self.count));
         }
         let mut point = [0.0; 3];
         for i in 0..3 {
-            let text = values[self.at[i]].trim_matches('"').trim();
+            let text = unquoted(&values[self.at[i]]);
             let value = text.parse().ok().filter(|value: &f64| value.is_finite());
             point[i] = value.ok_or_else(|| format!("{} is {:?}, not a finite number", COORDINATES[i], shown(text)))?;
         }
@@ -96,21 +117,35 @@ impl Columns {
     }
 }
 
+/// A value without the quotation marks that stand behind a space: to `csv` they are part of it.
+fn unquoted(value: &str) -> &str {
+    value.trim_matches('"').trim()
+}
+
 /// The beginning of a text, for messages.
 fn shown(text: &str) -> String {
     text.chars().take(60).collect()
 }
 
-/// Writes a foot a line, numbers so that they read back unchanged.
+/// Writes a foot a line, numbers so that they read back unchanged; `NaN` where there is none.
 ///
 /// # Errors
 /// The system's.
-pub(super) fn write(mut out: impl Write, feet: &[Foot]) -> io::Result<()> {
-    writeln!(out, "{COLUMNS}")?;
+pub(super) fn write(out: impl Write, feet: &[Option<Foot>]) -> csv::Result<()> {
+    let mut out = csv::Writer::from_writer(out);
+    out.write_record(COLUMNS)?;
     for foot in feet {
-        let ([x, y, z], [u, v]) = (foot.point.to_array(), foot.parameters);
-        writeln!(out, "{x:?},{y:?},{z:?},{},{u:?},{v:?},{:?},{}", foot.entity, foot.distance, state(foot))?;
+        let [x, y, z] = foot.map_or([f64::NAN; 3], |foot| foot.point.to_array());
+        let [u, v] = foot.and_then(|foot| foot.parameters).unwrap_or([f64::NAN; 2]);
+        let distance = foot.map_or(f64::INFINITY, |foot| foot.distance);
+        let [x, y, z, u, v, distance] = [x, y, z, u, v, distance].map(|number| format!("{number:?}"));
+        let (entity, state) = foot.map_or_else(
+            || ("none".to_owned(), "no foot: the point is too far away".to_owned()),
+            |foot| (foot.entity.to_string(), state(&foot)),
+        );
+        out.write_record([x, y, z, entity, u, v, distance, state])?;
     }
+    out.flush()?;
     Ok(())
 }
 
@@ -149,14 +184,11 @@ mod tests {
             ("x,y,z\r\n1,2,3\r\n\r\n4,nan,6\r\n", 4, "y is \"nan\""),
             ("x,y,z\n\n\n,2,3\n", 4, "x is \"\""),
             ("x,y,z\n1,2,3\n1,2\n", 3, "2 columns"),
+            ("x,y,z\n1,2,3\n1,2", 3, "2 columns"),
+            ("x,y,z\n1,2,\"3\"\r\n  \r\n1,2,nought", 4, "z is \"nought\""),
         ] {
             let flaw = read(text.as_bytes()).unwrap_err();
             assert!(flaw.line == line && flaw.what.contains(words), "{text:?}: {flaw}");
         }
-    }
-
-    #[test]
-    fn commas_in_names_separate_nothing() {
-        assert_eq!(split("face:1, name:\"A, B\",step:#4"), ["face:1", "name:\"A, B\"", "step:#4"]);
     }
 }

@@ -82,13 +82,12 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     Ok(if report.unproven == 0 { DONE } else { NOT_CERTIFIED })
 }
 
-fn project(options: &Options, teller: &Teller) -> Result<(Vec<Foot>, FeetReport), Failure> {
+fn project(options: &Options, teller: &Teller) -> Result<(Vec<Option<Foot>>, FeetReport), Failure> {
     teller.say("reading the points".to_owned());
     let xs = read_points(&options.points)?;
     teller.say(format!("{} points; reading the CAD", xs.len()));
     let model = Model::read(&options.cad, &in_a_child(options.cad_timeout, options.cad_scale))?;
-    let references: Vec<String> =
-        options.group.iter().flat_map(|list| points::split(list)).map(str::to_owned).collect();
+    let references: Vec<String> = options.group.iter().flat_map(|list| split(list)).map(str::to_owned).collect();
     let entities = entities(&model, &references)?;
     let group = Group::of(&model, &entities).map_err(|error| format!("{}: {error}", options.cad.display()))?;
     let start = Instant::now();
@@ -99,6 +98,16 @@ fn project(options: &Options, teller: &Teller) -> Result<(Vec<Foot>, FeetReport)
     report.notes.extend(model.losses());
     report.notes.extend(unit_trap(&xs, &group, report.mean_distance));
     Ok((feet, report))
+}
+
+/// The references of a list, without spaces around them: commas between quotation marks separate nothing.
+fn split(list: &str) -> Vec<&str> {
+    let mut quoted = false;
+    let outside = |c: char| {
+        quoted ^= c == '"';
+        c == ',' && !quoted
+    };
+    list.split(outside).map(str::trim).collect()
 }
 
 fn read_points(path: &Path) -> Result<Vec<DVec3>, Failure> {
@@ -127,7 +136,7 @@ fn entities(model: &Model, references: &[String]) -> Result<Vec<EntityId>, cad::
 }
 
 /// The feet, chunk by chunk, so that there is something to tell.
-fn closest(group: &Group, xs: &[DVec3], teller: &Teller) -> Vec<Foot> {
+fn closest(group: &Group, xs: &[DVec3], teller: &Teller) -> Vec<Option<Foot>> {
     let mut feet = Vec::with_capacity(xs.len());
     let (start, mut last) = (Instant::now(), Instant::now());
     teller.say(format!("projecting {} points", xs.len()));
@@ -149,4 +158,14 @@ fn unit_trap(xs: &[DVec3], group: &Group, mean_distance: f64) -> Option<String> 
     Some(format!(
         "the points are {ours:.6} across, the CAD {theirs:.6}: if the CAD is in another unit, give --cad-scale {factor}"
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::split;
+
+    #[test]
+    fn commas_in_names_separate_nothing() {
+        assert_eq!(split("face:1, name:\"A, B\",step:#4"), ["face:1", "name:\"A, B\"", "step:#4"]);
+    }
 }

@@ -10,13 +10,27 @@ use crate::element::Order;
 use crate::formats;
 use crate::smooth::{Progress, Smoothed};
 
+/// The columns that are written.
+const COLUMNS: [&str; 8] = ["seconds", "order", "sweep", "stage", "active_nodes", "c_wcn_min", "c_jac_min", "inverted"];
+
+/// A sweep, or the end: see [`COLUMNS`].
+struct Row {
+    seconds: f64,
+    order: usize,
+    sweep: usize,
+    stage: usize,
+    active_nodes: usize,
+    costs: [f64; 2],
+    inverted: usize,
+}
+
 /// Notes every sweep, and hands it on.
 pub(super) struct Trace<'a> {
     teller: &'a mut Teller,
     start: Option<Instant>,
     end: Option<f64>,
     order: Option<Order>,
-    rows: Vec<(f64, usize, Progress)>,
+    rows: Vec<Row>,
 }
 
 impl<'a> Trace<'a> {
@@ -27,18 +41,25 @@ impl<'a> Trace<'a> {
     /// Writes the rows. Seconds count from the beginning of the smoothing at the first order; costs are those of the last survey before the
     /// sweep, in the last row those of the mesh.
     pub(super) fn write(&self, path: &Path, smoothed: &Smoothed) -> Result<(), Failure> {
-        let mut text = "seconds,order,sweep,stage,active_nodes,c_wcn_min,c_jac_min,inverted\n".to_owned();
-        for (seconds, order, p) in &self.rows {
-            let [wcn, jac] = p.costs;
-            let row =
-                format!("{seconds:.3},{order},{},{},{},{wcn},{jac},{}\n", p.sweep, p.stage, p.active_nodes, p.inverted);
-            text.push_str(&row);
+        let end = smoothed.end;
+        let last = Row {
+            seconds: self.end.unwrap_or(0.0),
+            order: self.order.map_or(0, Order::get),
+            sweep: smoothed.sweeps,
+            stage: self.rows.last().map_or(0, |row| row.stage),
+            active_nodes: 0,
+            costs: [end.c_wcn, end.c_jac],
+            inverted: end.inverted,
+        };
+        let mut out = csv::Writer::from_writer(Vec::new());
+        out.write_record(COLUMNS)?;
+        for row in self.rows.iter().chain([&last]) {
+            let [wcn, jac] = row.costs.map(|cost| cost.to_string());
+            let counts = [row.order, row.sweep, row.stage, row.active_nodes, row.inverted];
+            let [order, sweep, stage, active, inverted] = counts.map(|count| count.to_string());
+            out.write_record([format!("{:.3}", row.seconds), order, sweep, stage, active, wcn, jac, inverted])?;
         }
-        let (end, seconds) = (smoothed.end, self.end.unwrap_or(0.0));
-        let stage = self.rows.last().map_or(0, |(.., p)| p.stage);
-        let order = self.order.map_or(0, Order::get);
-        let last = format!("{order},{},{stage},0,{},{},{}", smoothed.sweeps, end.c_wcn, end.c_jac, end.inverted);
-        formats::write_bytes(path, format!("{text}{seconds:.3},{last}\n").as_bytes())?;
+        formats::write_bytes(path, &out.into_inner()?)?;
         Ok(())
     }
 
@@ -63,7 +84,15 @@ impl Observer for Trace<'_> {
     }
 
     fn progress(&mut self, progress: &Progress) -> bool {
-        self.rows.push((self.seconds(), self.order.map_or(0, Order::get), *progress));
+        self.rows.push(Row {
+            seconds: self.seconds(),
+            order: self.order.map_or(0, Order::get),
+            sweep: progress.sweep,
+            stage: progress.stage,
+            active_nodes: progress.active_nodes,
+            costs: progress.costs,
+            inverted: progress.inverted,
+        });
         self.end = self.end.map(|_| self.seconds()); // the ladder smooths again
         self.teller.progress(progress)
     }

@@ -56,7 +56,7 @@ impl<'a> CadConstraint<'a> {
     }
 
     fn foot(&self, classification: Classification, x: DVec3) -> Option<Foot> {
-        self.case.association.group_of(classification).map(|group| group.closest(x, None))
+        self.case.association.group_of(classification).and_then(|group| group.closest(x, None))
     }
 }
 
@@ -82,7 +82,7 @@ impl Constraint for CadConstraint<'_> {
             return Freedom::Fixed;
         };
         // A foot on a rim has the parameters of the rim's own curve on its face, so that it has a normal as well.
-        match group.evaluate(foot.entity, foot.parameters) {
+        match group.evaluate_at(&foot) {
             Some(Evaluation::Surface(point)) if matches!(foot.entity, EntityId::Face(_)) => {
                 point.normal.map_or(Freedom::Fixed, Freedom::Plane)
             }

@@ -91,9 +91,10 @@ impl<'a> Projector<'_, 'a> {
             (_, Some(plane), _) => wishes.iter().map(|&x| plane.closest(x)).collect(),
             (Classification::Vertex(position), ..) => vec![position; wishes.len()],
             (_, _, Some(group)) => {
-                let feet: Vec<Foot> = wishes.iter().map(|&x| group.closest(x, None)).collect();
-                let unproven = feet.iter().filter(|f| !f.is_proven()).count();
-                return Feet { positions: feet.iter().map(|f| f.point).collect(), queries: feet.len(), unproven };
+                let feet: Vec<Option<Foot>> = wishes.iter().map(|&x| group.closest(x, None)).collect();
+                let unproven = feet.iter().filter(|foot| !foot.is_some_and(|foot| foot.is_proven())).count();
+                let positions = feet.iter().zip(wishes).map(|(foot, &wish)| foot.map_or(wish, |foot| foot.point));
+                return Feet { positions: positions.collect(), queries: feet.len(), unproven };
             }
             _ => wishes.to_vec(),
         };

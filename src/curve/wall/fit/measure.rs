@@ -122,7 +122,7 @@ impl<'a> Fit<'_, 'a> {
     }
 
     /// Points of the wall, and their feet.
-    pub(super) fn feet(&self, part: Part, values: &[Vec<f64>]) -> Vec<(DVec3, Foot)> {
+    pub(super) fn feet(&self, part: Part, values: &[Vec<f64>]) -> Vec<(DVec3, Option<Foot>)> {
         let Some(group) = self.group(self.classification(part)) else { return Vec::new() };
         let positions: Vec<DVec3> = self.nodes(part).into_iter().map(|n| self.position(n)).collect();
         let point = |values: &Vec<f64>| positions.iter().zip(values).map(|(x, v)| *x * *v).sum();
@@ -130,7 +130,7 @@ impl<'a> Fit<'_, 'a> {
     }
 
     pub(super) fn far(&self, part: Part, values: &[Vec<f64>]) -> f64 {
-        self.feet(part, values).iter().map(|(_, foot)| foot.distance).fold(0.0, f64::max)
+        self.feet(part, values).iter().filter_map(|(_, foot)| *foot).map(|foot| foot.distance).fold(0.0, f64::max)
     }
 
     /// The faces and edges that have nodes to slide, roughly measured.

@@ -161,8 +161,8 @@ impl Fit<'_, '_> {
     fn slider(&self, node: NodeId) -> Slider {
         let classification = self.level.wall.classification(node.index());
         let evaluation = self.group(classification).and_then(|group| {
-            let foot = group.closest(self.position(node), None);
-            group.evaluate(foot.entity, foot.parameters)
+            let foot = group.closest(self.position(node), None)?;
+            group.evaluate_at(&foot)
         });
         let along = match (classification, evaluation) {
             (Classification::Surface(_), Some(Evaluation::Surface(point))) => {
@@ -183,8 +183,9 @@ impl Fit<'_, '_> {
         let group = self.group(self.classification(part));
         let normal = |x: DVec3| group.and_then(|group| normal_at(group, x));
         let feet = self.feet(part, &table.fine);
-        let away = |(x, foot): &(DVec3, Foot)| {
-            if foot.distance > off { (*x - foot.point) / foot.distance } else { normal(*x).unwrap_or(DVec3::ZERO) }
+        let away = |(x, foot): &(DVec3, Option<Foot>)| match foot {
+            Some(foot) if foot.distance > off => (*x - foot.point) / foot.distance,
+            _ => normal(*x).unwrap_or(DVec3::ZERO),
         };
         let normals: Vec<DVec3> = feet.iter().map(away).collect();
         let inner: Vec<DVec3> =
@@ -210,7 +211,7 @@ impl Fit<'_, '_> {
         let slopes: Vec<Vec<DVec3>> = slopes.map(|(slopes, straight)| gradients(slopes, straight, &corners)).collect();
         let mean = |r: usize, q: usize| slopes.iter().map(|s| s[r].dot(s[q])).sum::<f64>() / slopes.len() as f64;
         let products = (0..rim.len()).map(|r| (0..rim.len()).map(|q| mean(r, q)).collect()).collect();
-        let distances = feet.iter().map(|(_, foot)| foot.distance).collect();
+        let distances = feet.iter().map(|(_, foot)| foot.map_or(f64::INFINITY, |foot| foot.distance)).collect();
         Model { piece, level: 0.0, room: 0.0, distances, sliders, slopes, products, shifts: self.shifts(part) }
     }
 
@@ -265,7 +266,7 @@ impl Fit<'_, '_> {
     fn slide(&mut self, sliders: &[Slider], before: &[DVec3], shares: &[f64], moved: &[bool]) {
         let foot = |s: usize| {
             let group = self.group(self.level.wall.classification(sliders[s].node.index())).filter(|_| shares[s] > 0.0);
-            group.map(|group| group.closest(before[s] + sliders[s].step * shares[s], None))
+            group.and_then(|group| group.closest(before[s] + sliders[s].step * shares[s], None))
         };
         let moved: Vec<usize> = (0..sliders.len()).filter(|&s| moved[s]).collect();
         let feet: Vec<Option<Foot>> = moved.par_iter().map(|&s| foot(s)).collect();
@@ -283,7 +284,7 @@ impl Fit<'_, '_> {
             let foot = |(&node, weights): (&NodeId, &[f64])| {
                 let moved = |(n, &w): (&NodeId, &f64)| self.level.wall.displacement(n.index()) * w;
                 let wish = self.straight(node) + rim.iter().zip(weights).map(moved).sum::<DVec3>();
-                (node, wish, group.map(|group| group.closest(wish, None)))
+                (node, wish, group.and_then(|group| group.closest(wish, None)))
             };
             inner.map(foot).collect()
         };
