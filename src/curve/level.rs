@@ -40,7 +40,7 @@ impl<'a> Level<'a> {
     /// that do not correspond.
     #[must_use]
     pub fn new(case: Case<'a>, mut elevated: Elevated) -> (Level<'a>, Vec<String>) {
-        let (periodic, notes) = PeriodicConstraint::new(&mut elevated, case.boundary, case.settings.freeze_linear);
+        let (periodic, notes) = PeriodicConstraint::new(&mut elevated, case.settings.freeze_linear);
         let wall = Wall::new(&case.association.nodes, elevated.boundary_nodes);
         let curved = elevated.mesh.points().to_vec();
         (Level { case, elevated, curved, wall, periodic }, notes)

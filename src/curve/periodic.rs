@@ -7,10 +7,10 @@ use std::collections::BTreeMap;
 use glam::{DAffine3, DVec3};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::element::{Cell, canonical, interior_slots};
+use crate::element::{Cell, interior_slots};
 use crate::mesh::elevate::Elevated;
 use crate::mesh::periodic::map_of;
-use crate::mesh::{Boundary, NodeId, Periodic};
+use crate::mesh::{EntityKey, FaceKey, Mesh, NodeId, Periodic};
 use crate::smooth::Image;
 
 /// Nodes that are images of others.
@@ -24,7 +24,7 @@ impl PeriodicConstraint {
     ///
     /// Returns what a user should know of pairs that are none.
     #[must_use]
-    pub fn new(elevated: &mut Elevated, boundary: &Boundary, freeze_linear: bool) -> (PeriodicConstraint, Vec<String>) {
+    pub fn new(elevated: &mut Elevated, freeze_linear: bool) -> (PeriodicConstraint, Vec<String>) {
         let mut notes = Vec::new();
         let mut leads: BTreeMap<NodeId, (NodeId, DAffine3)> = BTreeMap::new();
         let mut records = std::mem::take(elevated.mesh.periodic_mut());
@@ -36,7 +36,7 @@ impl PeriodicConstraint {
                 ));
                 continue;
             };
-            record.pairs.extend(new_pairs(elevated, boundary, record));
+            record.pairs.extend(new_pairs(elevated, record));
             for &(slave, master) in &record.pairs {
                 let linear = slave.index() < elevated.linear_nodes;
                 if slave != master && !(linear && freeze_linear) && root(&leads, master).0 != slave {
@@ -109,21 +109,21 @@ fn root(leads: &BTreeMap<NodeId, (NodeId, DAffine3)>, node: NodeId) -> (NodeId, 
 }
 
 /// The pairs of new nodes, on edges and faces of the slave entity.
-fn new_pairs(elevated: &Elevated, boundary: &Boundary, record: &Periodic) -> Vec<(NodeId, NodeId)> {
+fn new_pairs(elevated: &Elevated, record: &Periodic) -> Vec<(NodeId, NodeId)> {
     let masters: FxHashMap<NodeId, NodeId> = record.pairs.iter().copied().collect();
-    let own = carried(elevated, boundary, record.slave.dimension, |entity| entity == record.slave);
+    let own = carried(&elevated.mesh, record.slave);
     let mut pairs = Vec::new();
     for cell in [Cell::Line, Cell::Triangle, Cell::Quad] {
         let carriers = &elevated.carriers[cell as usize];
         let on_boundary = || carriers.iter().take_while(|(_, first)| first.index() < elevated.boundary_nodes);
-        let known: FxHashMap<&[NodeId], NodeId> = on_boundary().collect();
-        for (corners, first) in on_boundary().filter(|(corners, _)| own.contains(*corners)) {
+        let known: FxHashMap<FaceKey, NodeId> =
+            on_boundary().map(|(corners, first)| (FaceKey::new(corners), first)).collect();
+        for (corners, first) in on_boundary().filter(|(corners, _)| own.contains(&FaceKey::new(corners))) {
             let Some(images) = corners.iter().map(|n| masters.get(n).copied()).collect::<Option<Vec<_>>>() else {
                 continue;
             };
-            let seen = canonical(&images);
-            let key: Vec<NodeId> = seen[..images.len()].iter().map(|&q| images[usize::from(q)]).collect();
-            let Some(&lead) = known.get(&key[..]) else { continue };
+            let (key, seen) = FaceKey::seen(&images);
+            let Some(&lead) = known.get(&key) else { continue };
             for (own, other) in interior_slots(cell, elevated.mesh.order(), seen).into_iter().enumerate() {
                 let node = |first: NodeId, slot: usize| NodeId::new(first.index() + slot).ok();
                 pairs.extend(node(first, own).zip(node(lead, other)));
@@ -133,29 +133,13 @@ fn new_pairs(elevated: &Elevated, boundary: &Boundary, record: &Periodic) -> Vec
     pairs
 }
 
-/// Corners, in canonical order, of the edges and faces of the elements of these entities.
-fn carried(
-    elevated: &Elevated,
-    boundary: &Boundary,
-    dimension: u8,
-    is_own: impl Fn(crate::mesh::EntityKey) -> bool,
-) -> FxHashSet<Vec<NodeId>> {
-    let sorted = |corners: &[NodeId]| -> Vec<NodeId> {
-        canonical(corners)[..corners.len()].iter().map(|&q| corners[usize::from(q)]).collect()
-    };
+/// The edges and faces of the elements on an entity.
+fn carried(mesh: &Mesh, entity: EntityKey) -> FxHashSet<FaceKey> {
     let mut found = FxHashSet::default();
-    if dimension == 2 {
-        let faces = (0..boundary.faces.len()).filter(|&f| is_own(boundary.faces[f].entity));
-        for face in faces {
-            let corners = &boundary.corners[face];
-            found.insert(sorted(corners));
-            let edges = boundary.faces[face].cell.edges().iter();
-            found.extend(edges.map(|&[a, b]| sorted(&[corners[usize::from(a)], corners[usize::from(b)]])));
-        }
-    }
-    for (_, block) in elevated.mesh.blocks_of(1).filter(|(_, block)| is_own(block.entity)) {
-        for nodes in block.elements(elevated.mesh.order()) {
-            found.insert(sorted(&nodes[..Cell::Line.corner_count()]));
+    for cell in [Cell::Line, Cell::Triangle, Cell::Quad] {
+        for element in mesh.elements_of(cell).iter().filter(|own| own.entity == entity) {
+            found.insert(FaceKey::new(element.corners()));
+            found.extend(element.sides());
         }
     }
     found

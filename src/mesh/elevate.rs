@@ -116,7 +116,7 @@ impl Carriers {
     }
 
     /// The carriers: corners, and first new node.
-    pub fn iter(&self) -> impl ExactSizeIterator<Item = (&[NodeId], NodeId)> {
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = (&[NodeId], NodeId)> + Clone {
         self.corners.chunks_exact(self.cell.corner_count()).zip(self.first.iter().copied())
     }
 

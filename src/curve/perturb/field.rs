@@ -5,8 +5,8 @@ use glam::DVec3;
 
 use super::roots::Roots;
 use crate::element::{Cell, Order, basis};
-use crate::mesh::NodeId;
 use crate::mesh::elevate::Elevated;
+use crate::mesh::{Incidence, NodeId};
 
 /// Reach of the displacement, in displacements of the wall around the foot.
 const REACH: f64 = 5.0;
@@ -42,9 +42,8 @@ pub(super) struct Field<'a> {
     ends: Vec<f64>,
     /// Root of every linear node: a wall vertex.
     roots: Roots,
-    /// Wall faces around each wall vertex, by node: ranges of `around`.
-    starts: Vec<u32>,
-    around: Vec<u32>,
+    /// Wall faces around each wall vertex.
+    around: Incidence<u32>,
     /// Faces that closest points are sought on: those all of whose corners are roots.
     sought: Vec<u32>,
     tree: BoxTree,
@@ -71,7 +70,8 @@ impl<'a> Field<'a> {
         beyond: impl Fn(usize) -> bool,
     ) -> Field<'a> {
         let (mesh, linear_nodes) = (&elevated.mesh, elevated.linear_nodes);
-        let (starts, around) = faces_around(wall, linear_nodes);
+        let corners = (0..).zip(wall).flat_map(|(face, own)| own.corners().iter().map(move |n| (n.index(), face)));
+        let around = Incidence::new(linear_nodes, corners);
         let points = &mesh.points()[..];
         let sought: Vec<u32> =
             (0..wall.len() as u32).filter(|&f| wall[f as usize].corners().iter().all(|n| seeds[n.index()])).collect();
@@ -90,7 +90,6 @@ impl<'a> Field<'a> {
             wall,
             displacement,
             roots,
-            starts,
             around,
             sought,
             tree: BoxTree::new(&boxes),
@@ -141,7 +140,7 @@ impl<'a> Field<'a> {
         }
         let own = &own[..corners.len()];
         let first = own[0] as usize;
-        let faces = &self.around[self.starts[first] as usize..self.starts[first + 1] as usize];
+        let faces = self.around.at(first);
         let local = |face: &WallFace, root: u32| face.corners().iter().position(|n| n.index() == root as usize);
         let face = *faces.iter().find(|&&f| own.iter().all(|&r| local(&self.wall[f as usize], r).is_some()))?;
         let wall = &self.wall[face as usize];
@@ -255,23 +254,4 @@ fn ends(points: &[DVec3], roots: &[Option<u32>], beyond: impl Fn(usize) -> bool)
         }
     }
     ends
-}
-
-fn faces_around(wall: &[WallFace], linear_nodes: usize) -> (Vec<u32>, Vec<u32>) {
-    let mut starts = vec![0u32; linear_nodes + 1];
-    for node in wall.iter().flat_map(WallFace::corners) {
-        starts[node.index() + 1] += 1;
-    }
-    for n in 0..linear_nodes {
-        starts[n + 1] += starts[n];
-    }
-    let mut next = starts.clone();
-    let mut around = vec![0; starts[linear_nodes] as usize];
-    for (face, own) in wall.iter().enumerate() {
-        for node in own.corners() {
-            around[next[node.index()] as usize] = face as u32;
-            next[node.index()] += 1;
-        }
-    }
-    (starts, around)
 }

@@ -7,6 +7,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::element::Cell;
+use crate::mesh::Incidence;
 use crate::mesh::elevate::Elevated;
 
 /// The root of every linear node.
@@ -21,37 +22,21 @@ pub(super) struct Roots {
 /// The mesh edges at each linear node.
 pub(super) struct Graph<'a> {
     points: &'a [DVec3],
-    /// Nodes at the other ends of the edges, rising: ranges of `neighbours`, by node.
-    starts: Vec<u32>,
-    neighbours: Vec<u32>,
+    /// Nodes at the other ends of the edges, rising.
+    neighbours: Incidence<u32>,
 }
 
 impl<'a> Graph<'a> {
     pub(super) fn new(elevated: &'a Elevated) -> Graph<'a> {
         let linear_nodes = elevated.linear_nodes;
-        let edges =
-            || elevated.carriers[Cell::Line as usize].iter().map(|(ends, _)| [ends[0].index(), ends[1].index()]);
-        let mut starts = vec![0u32; linear_nodes + 1];
-        edges().flatten().for_each(|n| starts[n + 1] += 1);
-        for n in 0..linear_nodes {
-            starts[n + 1] += starts[n];
-        }
-        let mut next = starts.clone();
-        let mut neighbours = vec![0; starts[linear_nodes] as usize];
-        for [a, b] in edges() {
-            for (from, to) in [(a, b), (b, a)] {
-                neighbours[next[from] as usize] = to as u32;
-                next[from] += 1;
-            }
-        }
-        for n in 0..linear_nodes {
-            neighbours[starts[n] as usize..starts[n + 1] as usize].sort_unstable();
-        }
-        Graph { points: &elevated.mesh.points()[..linear_nodes], starts, neighbours }
+        let edges = elevated.carriers[Cell::Line as usize].iter().map(|(ends, _)| [ends[0].index(), ends[1].index()]);
+        let both = edges.flat_map(|[a, b]| [(a, b as u32), (b, a as u32)]);
+        let neighbours = Incidence::new(linear_nodes, both).sorted();
+        Graph { points: &elevated.mesh.points()[..linear_nodes], neighbours }
     }
 
     fn around(&self, node: usize) -> &[u32] {
-        &self.neighbours[self.starts[node] as usize..self.starts[node + 1] as usize]
+        self.neighbours.at(node)
     }
 
     /// For every linear node the seed at the end of the shortest path along mesh edges (Dijkstra from all seeds at once; equal paths
