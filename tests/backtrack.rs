@@ -59,7 +59,7 @@ fn displacements_are_taken_back_until_every_element_is_valid() {
     let mut level = given.level(&linear);
     let linear_nodes = level.elevated.linear_nodes;
     // A wall node pushed through several layers, and another just a little.
-    let wall_node = level.mesh().blocks_of(2).find_map(|(_, b)| b.nodes.iter().find(|n| n.index() >= linear_nodes));
+    let wall_node = level.mesh().side_blocks().find_map(|b| b.nodes.iter().find(|n| n.index() >= linear_nodes));
     let wall_node = *wall_node.unwrap();
     level.curved[wall_node.index()] += DVec3::splat(0.2);
     level.curved[linear_nodes] += DVec3::splat(1e-6);

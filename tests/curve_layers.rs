@@ -50,7 +50,7 @@ fn straight_places() -> Vec<DVec3> {
 /// Which nodes of every volume element are off their straight places, corners first.
 fn bent(mesh: &Mesh, straight: &[DVec3]) -> Vec<bool> {
     let off = |n: usize| mesh.points()[n] != straight[mesh.node_tags()[n] as usize];
-    let elements = mesh.blocks_of(3).flat_map(|(_, block)| block.elements(mesh.order()));
+    let elements = mesh.cell_blocks().flat_map(|block| block.elements(mesh.order()));
     elements.map(|nodes| nodes.iter().any(|n| off(n.index()))).collect()
 }
 
@@ -58,13 +58,13 @@ fn bent(mesh: &Mesh, straight: &[DVec3]) -> Vec<bool> {
 fn layers(mesh: &Mesh, straight: &[DVec3]) -> Vec<usize> {
     let mut reached = vec![false; mesh.points().len()];
     let curved = |names: &[String]| names.iter().any(|name| ["wall", "farfield"].contains(&name.as_str()));
-    for (_, block) in mesh.blocks_of(2).filter(|(_, block)| curved(&mesh.names_of(block.entity))) {
+    for block in mesh.side_blocks().filter(|block| curved(&mesh.names_of(block.entity))) {
         let off = |n: usize| mesh.points()[n].distance(straight[mesh.node_tags()[n] as usize]) > 1e-6;
         for face in block.elements(mesh.order()).filter(|face| face.iter().any(|n| off(n.index()))) {
             face[..block.cell.corner_count()].iter().for_each(|n| reached[n.index()] = true);
         }
     }
-    let elements: Vec<_> = mesh.blocks_of(3).flat_map(|(_, block)| block.elements(mesh.order())).collect();
+    let elements: Vec<_> = mesh.cell_blocks().flat_map(|block| block.elements(mesh.order())).collect();
     let mut layers = vec![usize::MAX; elements.len()];
     for layer in 1..200 {
         let touches = |e: &usize| layers[*e] == usize::MAX && elements[*e].iter().any(|n| reached[n.index()]);

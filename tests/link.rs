@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use common::{fixture, json, root, sagitta};
 use linkage_schema::{Entity, Resolution, resolve};
+use sagitta::element::Cell;
 use sagitta::formats::{self, WriteOptions};
 use sagitta::mesh::{Boundary, EntityKey, Mesh};
 
@@ -98,9 +99,9 @@ fn link_file(case: &Path, file: &Path, more: &[&str]) -> (PathBuf, serde_json::V
 fn compare(case: &Path) -> [usize; 2] {
     let name = case.display();
     let mut mesh = formats::read(&case.with_extension("msh")).unwrap();
-    let parts: BTreeSet<EntityKey> = mesh.blocks_of(2).map(|(_, block)| block.entity).collect();
+    let parts: BTreeSet<EntityKey> = mesh.side_blocks().map(|block| block.entity).collect();
     mesh = without_tags(mesh);
-    let merged: BTreeSet<EntityKey> = mesh.blocks_of(2).map(|(_, block)| block.entity).collect();
+    let merged: BTreeSet<EntityKey> = mesh.side_blocks().map(|block| block.entity).collect();
     assert!(merged.len() <= parts.len() && merged.iter().all(|key| key.tag > 9000), "{name}");
     let (_dir, output, report) = link(case, &mesh, &[]);
     assert_eq!(report["source"], "geometry");
@@ -263,8 +264,8 @@ fn a_thin_cambered_plate_goes_to_its_own_side() {
         let nodes: Vec<u32> = boundary.corners[face].iter().map(|n| n.index() as u32 + 1).collect();
         assert_eq!(faces[&sorted(&nodes)], BTreeSet::from([format!("face-{}", entity.tag)]), "{nodes:?}");
     }
-    let lines: usize = mesh.blocks_of(1).map(|(_, block)| block.tags.len()).sum();
-    let corners: usize = mesh.blocks_of(0).map(|(_, block)| block.tags.len()).sum();
+    let lines = mesh.elements_of(Cell::Line).len();
+    let corners = mesh.elements_of(Cell::Point).len();
     assert_eq!((edges.len(), points.len()), (lines, corners));
 
     // It is the trap that it candidates to be: the sides are the faces with most elements but those of the box.
@@ -392,9 +393,8 @@ fn patches_can_be_chosen_and_the_association_shown() {
     let path = output.to_str().unwrap();
     run(&["--straight", "farfield", "-o", path]).expect(0);
     let curved = formats::read(&output).unwrap();
-    let blocks =
-        curved.blocks_of(2).filter(|(_, block)| curved.names_of(block.entity).contains(&"farfield".to_owned()));
-    for (_, block) in blocks {
+    let blocks = curved.side_blocks().filter(|block| curved.names_of(block.entity).contains(&"farfield".to_owned()));
+    for block in blocks {
         for nodes in block.elements(curved.order()) {
             for (node, &[a, b]) in (block.cell.corner_count()..).zip(block.cell.edges()) {
                 let at = |n: usize| curved.points()[nodes[n].index()];

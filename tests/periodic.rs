@@ -29,8 +29,8 @@ fn curve(case: &str, order: u8, more: &[OsString], output: &Path) {
 
 /// Nodes of the surfaces with a physical name.
 fn nodes_of(mesh: &Mesh, name: &str) -> BTreeSet<NodeId> {
-    let blocks = mesh.blocks_of(2).filter(|(_, block)| mesh.names_of(block.entity).contains(&name.to_owned()));
-    blocks.flat_map(|(_, block)| block.nodes.iter().copied()).collect()
+    let blocks = mesh.side_blocks().filter(|block| mesh.names_of(block.entity).contains(&name.to_owned()));
+    blocks.flat_map(|block| block.nodes.iter().copied()).collect()
 }
 
 /// The farthest of any node of `right` from the nearest image of a node of `left`, share of the box.
@@ -101,7 +101,7 @@ fn largest_bend(dir: &Path, case: &str) -> f64 {
     curve(case, 2, &[], &output);
     let mesh = formats::read(&output).unwrap();
     let mut largest = 0.0_f64;
-    for (_, block) in mesh.blocks_of(2).filter(|(_, block)| mesh.names_of(block.entity).contains(&"left".to_owned())) {
+    for block in mesh.side_blocks().filter(|block| mesh.names_of(block.entity).contains(&"left".to_owned())) {
         for nodes in block.elements(mesh.order()) {
             let at = |n: usize| mesh.points()[nodes[n].index()];
             for (node, &[a, b]) in (block.cell.corner_count()..).zip(block.cell.edges()) {

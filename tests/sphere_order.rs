@@ -108,7 +108,7 @@ fn off_the_sphere(mesh: &Mesh) -> f64 {
         })
         .collect();
     let (mut farthest, mut faces) = (0.0_f64, 0);
-    for (_, block) in mesh.blocks_of(2).filter(|(_, b)| b.entity.tag == WALL) {
+    for block in mesh.side_blocks().filter(|b| b.entity.tag == WALL) {
         for nodes in block.elements(mesh.order()) {
             faces += 1;
             for values in &samples {

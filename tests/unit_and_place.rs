@@ -140,8 +140,8 @@ fn another_place_is_told_with_its_distance() {
 /// The first node inside the outer cylinder's face, and the outward direction there.
 fn wall_node(mesh: &Mesh) -> (usize, DVec3) {
     let nodes_of = |own: bool| {
-        let blocks = mesh.blocks_of(2).filter(move |(_, b)| (b.entity.tag == OUTER.1) == own);
-        blocks.flat_map(|(_, b)| b.nodes.iter().map(|n| n.index())).collect::<std::collections::BTreeSet<_>>()
+        let blocks = mesh.side_blocks().filter(move |b| (b.entity.tag == OUTER.1) == own);
+        blocks.flat_map(|b| b.nodes.iter().map(|n| n.index())).collect::<std::collections::BTreeSet<_>>()
     };
     let node = *nodes_of(true).difference(&nodes_of(false)).next().unwrap();
     let x = mesh.points()[node];

@@ -66,14 +66,11 @@ pub(super) fn bounds(bounds: Aabb) -> String {
 fn mesh(mesh: &Mesh) -> Result<String, Failure> {
     let mut text = format!("mesh of order {}, {} nodes\n", mesh.order(), mesh.points().len());
     writeln!(text, "  {}", bounds(Aabb::of_points(mesh.points().iter().copied())))?;
-    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
-    for block in mesh.blocks() {
-        *counts.entry(block.cell.name()).or_default() += block.tags.len();
-    }
+    let counts: BTreeMap<&str, usize> = mesh.counts().into_iter().map(|(cell, count)| (cell.name(), count)).collect();
     let counts: Vec<String> = counts.iter().map(|(cell, count)| format!("{count} {cell}")).collect();
     writeln!(text, "  elements: {}", counts.join(", "))?;
     let mut patches: BTreeMap<_, usize> = BTreeMap::new();
-    for (_, block) in mesh.blocks_of(2) {
+    for block in mesh.side_blocks() {
         *patches.entry(block.entity).or_default() += block.tags.len();
     }
     for (entity, faces) in patches {

@@ -13,6 +13,8 @@ mod parts;
 pub mod periodic;
 mod zone;
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 
 pub use block::Block;
@@ -160,6 +162,16 @@ impl Mesh {
         Elements::new(self.parts.order, self.side_blocks())
     }
 
+    /// Number of elements of each kind that there is.
+    #[must_use]
+    pub fn counts(&self) -> BTreeMap<Cell, usize> {
+        let mut counts = BTreeMap::new();
+        for block in self.blocks().iter().filter(|block| !block.tags.is_empty()) {
+            *counts.entry(block.cell).or_default() += block.tags.len();
+        }
+        counts
+    }
+
     /// The elements of one kind, numbered among themselves.
     #[must_use]
     pub fn elements_of(&self, cell: Cell) -> Elements<'_> {
@@ -168,8 +180,7 @@ impl Mesh {
 
     /// Blocks of cells.
     pub fn cell_blocks(&self) -> impl Iterator<Item = &Block> + Clone {
-        let own = self.dimension();
-        self.parts.blocks.iter().filter(move |block| block.cell.dimension() == own)
+        self.blocks_of(self.dimension()).map(|(_, block)| block)
     }
 
     /// Blocks of sides.
@@ -178,14 +189,8 @@ impl Mesh {
         self.parts.blocks.iter().filter(move |block| block.cell.dimension() + 1 == own)
     }
 
-    /// Number of elements of the given dimension.
-    #[must_use]
-    pub fn element_count(&self, dimension: usize) -> usize {
-        self.parts.blocks.iter().filter(|b| b.cell.dimension() == dimension).map(|b| b.tags.len()).sum()
-    }
-
-    /// Blocks of the given dimension, with their place in [`Mesh::blocks`].
-    pub fn blocks_of(&self, dimension: usize) -> impl Iterator<Item = (usize, &Block)> {
+    /// Blocks of the given dimension, with their place in the list of all.
+    fn blocks_of(&self, dimension: usize) -> impl Iterator<Item = (usize, &Block)> + Clone {
         self.parts.blocks.iter().enumerate().filter(move |(_, b)| b.cell.dimension() == dimension)
     }
 

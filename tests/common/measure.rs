@@ -58,7 +58,7 @@ fn table(cell: Cell, order: Order) -> Vec<(Vec<[f64; 3]>, f64)> {
 /// Volume of the cells of three dimensions, and area by entity of those of two; of a plane mesh the signed area of each cell.
 pub fn measure(mesh: &Mesh) -> (f64, BTreeMap<EntityKey, f64>) {
     let (mut volume, mut areas) = (0.0, BTreeMap::new());
-    let plane = mesh.element_count(3) == 0;
+    let plane = !mesh.is_volume();
     for block in mesh.blocks().iter().filter(|block| block.cell.dimension() >= 2) {
         let table = table(block.cell, mesh.order());
         for nodes in block.elements(mesh.order()) {

@@ -9,11 +9,11 @@ use sagitta::mesh::Mesh;
 /// Points along an edge, less one.
 const DENSITY: usize = 12;
 
-/// Elements of three dimensions with a point at which the Jacobian is not positive.
+/// Cells with a point at which the Jacobian is not positive.
 pub fn inverted(mesh: &Mesh) -> Vec<(Cell, u64)> {
     let mut tables = BTreeMap::new();
     let mut found = Vec::new();
-    for (_, block) in mesh.blocks_of(3) {
+    for block in mesh.cell_blocks() {
         let table = tables.entry(block.cell).or_insert_with(|| table(block.cell, mesh.order()));
         for (nodes, &tag) in block.elements(mesh.order()).zip(&block.tags) {
             let points: Vec<DVec3> = mesh.points_of(nodes).collect();

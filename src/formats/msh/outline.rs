@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashSet};
 use std::ops::Range;
 
 use crate::element::Order;
-use crate::mesh::{Entity, EntityKey, Mesh, NodeId};
+use crate::mesh::{Block, Entity, EntityKey, Mesh, NodeId};
 
 /// The layout of a mesh whose entities are complete: every node and block has one that the file will tell of.
 pub(super) struct Outline<'a> {
@@ -137,7 +137,8 @@ fn node_entities(mesh: &Mesh, blocks: &[EntityKey]) -> Vec<EntityKey> {
     let mut entities: Vec<EntityKey> = vec![fallback; mesh.points().len()];
     if mesh.node_entities().len() < entities.len() || mesh.node_entities().contains(&None) {
         for dimension in (0..=3).rev() {
-            for (n, block) in mesh.blocks_of(dimension) {
+            let own = |(_, block): &(usize, &Block)| block.cell.dimension() == dimension;
+            for (n, block) in mesh.blocks().iter().enumerate().filter(own) {
                 block.nodes.iter().for_each(|node| entities[node.index()] = blocks[n]);
             }
         }

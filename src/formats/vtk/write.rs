@@ -107,7 +107,7 @@ impl Array<'_> {
 
 impl<'a> Grid<'a> {
     fn new(mesh: &'a Mesh, volume_only: bool) -> Grid<'a> {
-        let top = mesh.blocks().iter().map(|b| b.cell.dimension()).max().unwrap_or(0);
+        let top = mesh.dimension();
         let entities: HashMap<EntityKey, &Entity> = mesh.entities().iter().map(|e| (e.key, e)).collect();
         let wanted = mesh.blocks().iter().filter(|b| !volume_only || b.cell.dimension() == top);
         let part = |block: &'a Block| {
@@ -126,7 +126,7 @@ impl<'a> Grid<'a> {
         for field in fields {
             let (what, needed) = match field.support {
                 Support::Points => ("points", self.mesh.points().len()),
-                Support::Elements => ("elements", self.mesh.element_count(self.top)),
+                Support::Elements => ("elements", self.mesh.cells().len()),
             };
             if field.values.len() != needed {
                 let found = field.values.len();
