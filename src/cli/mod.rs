@@ -68,7 +68,7 @@ pub fn run(arguments: Vec<OsString>) -> ExitCode {
         Ok(program) => program,
         Err(error) => {
             let code = if error.use_stderr() { COULD_NOT_RUN } else { DONE };
-            // Nothing can be told to someone whose stderr is gone.
+            // Nothing can be reported to someone whose stderr is gone.
             let _ = error.print();
             return code.into();
         }

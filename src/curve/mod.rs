@@ -13,7 +13,7 @@
 //!
 //! | array | bytes |
 //! |---|---|
-//! | places, and straight places: 2 x `DVec3` | 48 |
+//! | positions, and straight positions: 2 x `DVec3` | 48 |
 //! | nodes of the elements: 10 x `u32` a tet | 30 |
 //! | numbers in the file: `u64` a node and an element | 14 |
 //! | entity of each node | 12 |
@@ -24,7 +24,7 @@
 //! | boundary: classifications, displacements, association | 8 |
 //! | CAD, code, allocator | 23 |
 //!
-//! At P3 and P4 the mesh of the order below is kept as well, as far as it takes to go on from it: places and nodes of the elements.
+//! At P3 and P4 the mesh of the order below is kept as well, as far as it takes to go on from it: positions and nodes of the elements.
 //!
 //! Smoothing takes more for *active* nodes only (none in that case): a gradient and a Hessian block (96 bytes) for each node of each
 //! active element and again for each node, the inverse block (72), and 8 pairs of steps and gradient changes (48 each): 1.3 kB an

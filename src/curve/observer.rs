@@ -1,4 +1,4 @@
-//! Who is told how the work goes on, and the clock of its steps.
+//! Who follows the work, and the clock of its steps.
 
 use std::time::Instant;
 
@@ -39,7 +39,7 @@ impl Step {
     }
 }
 
-/// Who is told how the work goes on. Every method has a default that does nothing and goes on, so that `()` is an observer.
+/// Who follows the work. Every method has a default that does nothing and goes on, so that `()` is an observer.
 pub trait Observer {
     /// The steps from [`Step::Elevate`] to [`Step::Smooth`] begin, for a mesh of this order.
     fn order(&mut self, _order: Order) {}

@@ -90,7 +90,7 @@ impl Lower<'_> {
     }
 }
 
-/// Tells only of sweeps: the steps of an order that is made a second time are not told again.
+/// Reports sweeps only: the steps of an order that is made a second time are not reported again.
 struct Silent<'o>(&'o mut dyn Observer);
 
 impl Observer for Silent<'_> {

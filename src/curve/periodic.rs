@@ -20,7 +20,8 @@ pub struct PeriodicConstraint {
 }
 
 impl PeriodicConstraint {
-    /// The periodic of an elevated mesh, whose periodic pairs are extended to the new nodes. With `freeze_linear` linear nodes are not tied.
+    /// The constraint of an elevated mesh, whose periodic pairs are extended to the new nodes. With `freeze_linear` linear nodes are not
+    /// constrained.
     ///
     /// Returns what a user should know of pairs that are none.
     #[must_use]

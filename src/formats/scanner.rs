@@ -16,7 +16,7 @@ pub(super) struct Scanner<R> {
     offset: u64,
     line: u64,
     word: Vec<u8>,
-    /// Whether places are told as byte offsets.
+    /// Whether places are given as byte offsets.
     pub(super) binary: bool,
 }
 

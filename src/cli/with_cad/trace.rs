@@ -93,7 +93,7 @@ impl Observer for Trace<'_> {
             costs: progress.costs,
             inverted: progress.inverted,
         });
-        self.end = self.end.map(|_| self.seconds()); // the ladder smooths again
+        self.end = self.end.map(|_| self.seconds()); // recovery smooths again
         self.teller.progress(progress)
     }
 }

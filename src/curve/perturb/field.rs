@@ -1,4 +1,4 @@
-//! The displacement of the wall, to be asked at any place of the linear mesh.
+//! The displacement of the wall, at any position in the linear mesh.
 
 use cad::{Aabb, BoxTree};
 use glam::DVec3;
@@ -30,7 +30,7 @@ impl WallFace {
     }
 }
 
-/// The displacement of the wall, ready to be asked at any place.
+/// The displacement of the wall, at any position.
 pub(super) struct Field<'a> {
     order: Order,
     points: &'a [DVec3],
@@ -49,7 +49,7 @@ pub(super) struct Field<'a> {
     tree: BoxTree,
 }
 
-/// A place on the linear wall: a face and a point of it in reference coordinates.
+/// A point of the linear wall: a face and a point of it in reference coordinates.
 #[derive(Clone, Copy)]
 struct Foot {
     face: usize,

@@ -1,6 +1,6 @@
 //! Carrying the wall's displacement into the volume, equation (1).
 //!
-//! A node takes the displacement of its *foot* on the linear wall, times a share that falls with the distance `d` to the
+//! A node takes the displacement of its *foot* on the linear wall, times a factor that falls with the distance `d` to the
 //! foot. Two feet are used:
 //!
 //! * **Roots.** Every linear node has a root, the wall vertex nearest to it along mesh edges. Where the roots of a
@@ -12,15 +12,15 @@
 //! The displacement is the wall polynomial at the foot. Taking it from the nearest wall node instead is wrong by many
 //! times the wall spacing.
 //!
-//! # The share
+//! # The factor
 //!
 //! The paper's `min(1, |P| / d)` falls with slope -1 where `d = |P|`: a bulging wall squeezes the cells there to nothing,
-//! and `|P|`, taken point by point, is no polynomial. Here the share is `1 / (1 + (d / (5 R))^2)`, `R` the largest
+//! and `|P|`, taken point by point, is no polynomial. Here the factor is `1 / (1 + (d / (5 R))^2)`, `R` the largest
 //! displacement of the wall faces around the foot, linear between wall vertices; but no less than `0.6 L`, `L` the wall
-//! faces' shortest edges: where columns lean (downstream of a sharp trailing edge by 1 : 8) a share that falls within a few
+//! faces' shortest edges: where columns lean (downstream of a sharp trailing edge by 1 : 8) a factor that falls within a few
 //! sagittas falls within a layer. Measured on the weeble before any smoothing, min C_WCN / C_JAC (inverted elements):
 //!
-//! | share | P2 | P4 |
+//! | factor | P2 | P4 |
 //! |---|---|---|
 //! | `min(1, P/d)`, the paper's | -0.04 / -1.10 (1245) | -0.21 / -7.9 (2744) |
 //! | `min(1, 4 P/d)` | 0.89 / 0.35 (0) | 0.76 / -0.85 (880) |

@@ -1,8 +1,8 @@
-//! Backtracking: where elements stay invalid or wall faces folded, the displacement of the nodes around them is taken back, just as
+//! Backtracking: where elements stay invalid or wall faces folded, the displacement of the nodes around them is reduced, just as
 //! far as it must be.
 //!
 //! Each round halves the displacement of all nodes of the elements that are not proven valid or have a face that is not proven free
-//! of folds (below an eighth it is taken back whole) and of their neighbours, and judges what that touches. What is gone back to is a
+//! of folds (below an eighth to nothing) and of their neighbours, and judges what that touches. What is gone back to is a
 //! valid mesh, the curved mesh of a lower order or the straight one, so the rounds end in a valid mesh; every wall face that is no
 //! longer on the CAD is listed.
 
@@ -26,7 +26,7 @@ pub struct Fallback {
     pub positions: Vec<DVec3>,
 }
 
-/// Takes displacements back until the proof holds, or nothing is left to take back; `proof` is that of the level as it is. Returns
+/// Reduces displacements until the proof holds, or nothing is left to reduce; `proof` is that of the level as it is. Returns
 /// the fraction of its displacement from the fallback that each node keeps, and the proof.
 #[must_use]
 pub fn backtrack(level: &mut Level, fallback: &Fallback, proof: Proof) -> (Vec<f64>, Proof) {

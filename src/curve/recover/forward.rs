@@ -1,4 +1,4 @@
-//! Forward again, from a mesh that is proven valid: what was taken back goes towards the CAD step by step, and is smoothed after each.
+//! Forward again, from a mesh that is proven valid: what went back goes towards the CAD step by step, and is smoothed after each.
 //!
 //! A step begins at a valid mesh and moves its walls a little, so few elements are inverted after it, and by little: the smoother need
 //! not find its way from far. The torus at scale 0.5, P4, does not come out of one element at `J = -12 J_c` by smoothing alone; from

@@ -15,7 +15,7 @@ use crate::element::Order;
 use crate::mesh::ElementId;
 use crate::smooth::{self, Problem, Smoothed, Watch};
 
-/// Rounds in which the displacement is taken back; the fraction that stays is halved from one to the next, and none is left in the
+/// Rounds in which the displacement is reduced; the fraction that stays is halved from one to the next, and none is left in the
 /// last.
 const ROUNDS: usize = 4;
 /// Sweeps of one smoothing in recovery.

@@ -1,4 +1,4 @@
-//! Spots around which the wall is taken back, or goes no farther.
+//! Spots around which the wall goes back, or goes no farther.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -8,7 +8,7 @@ use crate::mesh::{ElementId, Mesh};
 /// Reach, in distances to the wall plus the element's size.
 const REACH: f64 = 2.0;
 
-/// A spot around which the wall is taken back, or goes no farther.
+/// A spot around which the wall goes back, or goes no farther.
 pub(super) struct Spot {
     middle: DVec3,
     reach: f64,

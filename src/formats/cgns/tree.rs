@@ -23,7 +23,7 @@ pub(super) struct Tree<'a> {
 /// Why an answer holds no tree.
 #[derive(Debug)]
 pub(super) enum Failure {
-    /// The library told why.
+    /// The library said why.
     Told(String),
     /// The answer ends too early.
     Cut,

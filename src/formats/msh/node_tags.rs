@@ -1,4 +1,4 @@
-//! From the file's node numbers to places in the list of nodes.
+//! From the file's node numbers to indices in the list of nodes.
 
 use super::fault::MshFault;
 use crate::formats::error::Fault;

@@ -38,7 +38,7 @@ fn groups(entities: &HashMap<EntityKey, &Entity>, block: &Block) -> Vec<i32> {
     let of_entity = || entities.get(&block.entity).map(|e| &e.physical_tags);
     let tags = if block.physical_tags.is_empty() { of_entity() } else { Some(&block.physical_tags) };
     match tags {
-        // The sign tells the group's orientation, for which this version has no place.
+        // The sign gives the group's orientation, for which this version has no place.
         Some(tags) if !tags.is_empty() => tags.iter().map(|tag| tag.saturating_abs()).collect(),
         _ => vec![0],
     }

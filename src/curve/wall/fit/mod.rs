@@ -14,7 +14,7 @@
 //!    the sliding itself. Distances are linear there; no CAD is asked.
 //! 4. Cut slides that strain a face by more than 0.12, put the nodes on the CAD, and measure. Around a face or edge that is now farther
 //!    than before and near its level, slides are halved, until there is none.
-//! 5. Keep this if a level has fallen by a worthwhile share, and begin again; else take it back.
+//! 5. Keep this if a level has fallen by a worthwhile fraction, and begin again; else undo it.
 //!
 //! So no level rises, of no surface and no curve. What is gained stands in [`crate::curve::wall`].
 
@@ -37,20 +37,20 @@ use table::Table;
 
 /// Rounds at most.
 const ROUNDS: usize = 4;
-/// Faces farther than this share of their level are fitted ...
+/// Faces farther than this fraction of their level are fitted ...
 const FAR: f64 = 0.5;
 /// ... the farthest first, of all faces and edges one in so many ...
 const FEW: usize = 10;
 /// ... but as many as this where there are few, and no more than that where there are many.
 const CHOSEN: [usize; 2] = [64, 4096];
-/// Distances below this share of an edge are not worth a slide.
+/// Distances below this fraction of an edge are not worth a slide.
 ///
 /// It must lie below what refinement reaches: with 1e-4 the fit ended between two levels, and with it the observed order.
 const NEGLIGIBLE: f64 = 1e-8;
 /// Levels of curves that an edge on one is compared with.
 ///
 /// Compared with one, edges slide for their own sake, and wing_sharp at scale 0.4 came out with `C_JAC` 0.76 in place of 0.80. Not
-/// compared, they slide off their curves, and what is around them is taken back: the weeble at 1.4e-3 in place of 1.1e-3.
+/// compared, they slide off their curves, and what is around them slides back: the weeble at 1.4e-3 in place of 1.1e-3.
 const ON_CURVE: f64 = 3.0;
 /// Sweeps of the model's solver; 200 gave the same distances to 1e-4 of them.
 const SWEEPS: usize = 40;
@@ -59,19 +59,19 @@ const SWEEPS: usize = 40;
 const STRAIN: f64 = 0.12;
 /// Parts in which a slide is cut down to the largest strain.
 const CUTS: u32 = 16;
-/// A face or edge may come out farther than it was, up to this share of the level of its surface or curve.
+/// A face or edge may come out farther than it was, up to this fraction of the level of its surface or curve.
 const ROOM: f64 = 0.95;
-/// What a distance may exceed: less than this share of it is no change.
+/// What a distance may exceed: less than this fraction of it is no change.
 const SAME: f64 = 1e-3;
 /// Times that slides are halved where faces come out too far.
 const TRIES: usize = 16;
-/// Shares of a slide that are not halved but given up.
+/// Fractions of a slide below this are not halved but set to nothing.
 const LEAST: f64 = 0.2;
-/// A round is kept if it takes a level to this share of it.
+/// A round is kept if it takes a level to this fraction of it.
 const GAIN: f64 = 0.98;
-/// A slide below this share of the node's edge is not made: in a CAD file whose curves end off their faces (IGES) it can only end worse.
+/// A slide below this fraction of the node's edge is not made: in a CAD file whose curves end off their faces (IGES) it can only end worse.
 const UNMOVED: f64 = 1e-6;
-/// Distances below this share of a face's edge have no direction.
+/// Distances below this fraction of a face's edge have no direction.
 const NO_DIRECTION: f64 = 1e-9;
 
 /// Lets nodes of wall edges slide where that takes the wall nearer to the CAD; nodes of periodic pairs stay.
@@ -262,7 +262,7 @@ impl Fit<'_, '_> {
         None
     }
 
-    /// Puts nodes that move at a share of their steps from `before`, on the CAD.
+    /// Puts nodes that move at a fraction of their steps from `before`, on the CAD.
     fn slide(&mut self, sliders: &[Slider], before: &[DVec3], shares: &[f64], moved: &[bool]) {
         let foot = |s: usize| {
             let group = self.group(self.level.wall.classification(sliders[s].node.index())).filter(|_| shares[s] > 0.0);

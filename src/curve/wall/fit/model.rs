@@ -118,7 +118,7 @@ fn newton(slider: &Slider, models: &[Model]) -> [f64; 2] {
 }
 
 impl Model {
-    /// Largest strain `|grad u|` where the rim has slid from `before` by a share of its way.
+    /// Largest strain `|grad u|` where the rim has slid from `before` by a fraction of its way.
     pub(super) fn strain(&self, before: &[DVec3], share: f64) -> f64 {
         let shifts: Vec<DVec3> = before.iter().zip(&self.shifts).map(|(a, b)| a.lerp(*b, share)).collect();
         let at = |slopes: &Vec<DVec3>| -> f64 {
