@@ -1,8 +1,6 @@
 //! Nets that are subdivided: where their lines, corners and raised coefficients stand.
 
-use std::sync::OnceLock;
-
-use crate::element::{Cell, Net, Order};
+use crate::element::{Cell, Net, Order, Tables};
 
 /// Tables for the Jacobian net of one cell and order.
 #[derive(Debug)]
@@ -53,8 +51,8 @@ pub(super) struct Means {
 impl Form {
     /// The tables of a cell with two or three dimensions.
     pub(super) fn of(cell: Cell, order: Order) -> &'static Form {
-        static TABLES: [[OnceLock<Form>; 4]; 8] = [const { [const { OnceLock::new() }; 4] }; 8];
-        TABLES[cell as usize][order.get() - 1].get_or_init(|| Form::build(cell, order))
+        static TABLES: Tables<Form> = Tables::new();
+        TABLES.get(cell, order, || Form::build(cell, order))
     }
 
     fn build(cell: Cell, order: Order) -> Form {

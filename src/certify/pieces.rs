@@ -2,9 +2,11 @@
 
 use super::form::{Bundle, Direction, Form, LANES};
 use super::real::UNIT;
+use crate::element::Order;
 
-/// Longest line of any net: degree 11 (hex and pyramid P4).
-const LINE: usize = 12;
+/// Longest line of any net, of degree `3 p - 1`: along each axis the three derivatives have degrees `p`, `p` and `p - 1` at most.
+/// A longer one would be cut, and nothing proven of what is cut off; a test goes through all forms.
+pub(super) const LINE: usize = 3 * Order::MAX.get();
 
 /// What `J` is compared with.
 #[derive(Clone, Copy, Debug)]
@@ -116,6 +118,7 @@ pub(super) fn halve(net: &[f64], size: usize, direction: &Direction, left: &mut 
 
 fn halve_bundle(from: &[f64], bundle: &Bundle, left: &mut [f64], right: &mut [f64]) {
     let mut sums = [[0.0; LANES]; LINE];
+    debug_assert!(bundle.len() <= LINE, "a line of {} coefficients is cut", bundle.len());
     let n = bundle.len().min(LINE);
     for (sum, at) in sums.iter_mut().zip(bundle) {
         *sum = at.map(|at| from[usize::from(at)]);

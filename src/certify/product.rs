@@ -1,13 +1,11 @@
 //! The Bernstein coefficients of an element's Jacobian determinant, by direct convolution of its derivative nets.
 
-use std::sync::OnceLock;
-
 use rustc_hash::FxHashMap;
 
 use super::real::Real;
 use super::rounding::Growth;
 use crate::element::derivative::{Derivative, derivatives};
-use crate::element::{Cell, Net, Order};
+use crate::element::{Cell, Net, Order, Tables};
 
 /// Tables of one cell and order.
 ///
@@ -53,8 +51,8 @@ pub(super) struct Workspace<T> {
 impl Product {
     /// The tables of a cell with two or three dimensions.
     pub(super) fn of(cell: Cell, order: Order) -> &'static Product {
-        static TABLES: [[OnceLock<Product>; 4]; 8] = [const { [const { OnceLock::new() }; 4] }; 8];
-        TABLES[cell as usize][order.get() - 1].get_or_init(|| Product::build(cell, order))
+        static TABLES: Tables<Product> = Tables::new();
+        TABLES.get(cell, order, || Product::build(cell, order))
     }
 
     fn build(cell: Cell, order: Order) -> Product {

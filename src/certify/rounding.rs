@@ -21,6 +21,7 @@
 //! covers products that are too small for a normal `f64`.
 
 use super::real::{Real, UNIT};
+use crate::element::Order;
 
 /// More than all underflows in one coefficient can add up to, the coordinates being scaled to size 1: fewer than `1e8`
 /// products, each off by at most `2^-1074`, times factors below `1e23`; ten times that in pairs of `f64`.
@@ -37,6 +38,10 @@ pub(super) struct Growth {
     /// `K`.
     operations: usize,
 }
+
+// The constants below and in form.rs, judge.rs and straight.rs were derived for these orders: integers exact in `f64`, products and
+// sums of so many terms, coefficients numbered by `u16`. For a higher one go through section 9 of docs/theory.md first.
+const _: () = assert!(Order::MAX.get() <= 4, "the rounding bound is derived for orders up to 4");
 
 impl Growth {
     pub(super) fn new(columns: [(usize, f64); 3], cross: usize, dot: usize) -> Growth {

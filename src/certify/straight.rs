@@ -1,9 +1,7 @@
 //! Straight elements: how far the nodes are from the lattice of their own corners.
 
-use std::sync::OnceLock;
-
 use super::real::UNIT;
-use crate::element::{Cell, Order, basis, bernstein, lattice};
+use crate::element::{Cell, Order, Tables, basis, bernstein, lattice};
 
 /// Nodes that are farther than this from the lattice, relative to the element's size, make it curved.
 const STRAIGHT: f64 = 1e-9;
@@ -31,8 +29,8 @@ pub(super) fn distance(cell: Cell, order: Order, nodes: &[[f64; 3]], largest: [f
 
 /// Weights of the corners at each node of the straight element.
 fn weights(cell: Cell, order: Order) -> &'static [f64] {
-    static TABLES: [[OnceLock<Vec<f64>>; 4]; 8] = [const { [const { OnceLock::new() }; 4] }; 8];
-    TABLES[cell as usize][order.get() - 1].get_or_init(|| {
+    static TABLES: Tables<Vec<f64>> = Tables::new();
+    TABLES.get(cell, order, || {
         let unit = |at: &[u8; 3]| at.map(|x| f64::from(x) / order.get() as f64);
         let values = |at| basis::values(cell, Order::LINEAR, bernstein::chart(cell, unit(at)));
         lattice(cell, order).iter().flat_map(values).collect()

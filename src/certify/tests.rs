@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use super::form::Form;
+use super::pieces::LINE;
 use super::product::{Product, Workspace};
 use super::{Bounds, Finding, Judge, Method, Settings, Shape, Verdict};
 use crate::element::{Cell, Net, Order, basis, bernstein, lattice};
@@ -95,6 +97,15 @@ fn polynomial(net: Net, index: [usize; 3], at: [f64; 3]) -> f64 {
         _ => pair(p, i, x) * pair(q, j, y) * pair(n, k, z),
     };
     net.weight(index) * powers
+}
+
+#[test]
+fn no_line_is_longer_than_the_longest() {
+    let lines = |(cell, order): (Cell, Order)| {
+        Form::of(cell, order).directions.iter().flat_map(|direction| &direction.bundles).map(Vec::len).max()
+    };
+    let faces = [Cell::Triangle, Cell::Quad].into_iter().flat_map(|cell| Order::all().map(move |order| (cell, order)));
+    assert_eq!(each().chain(faces).filter_map(lines).max(), Some(LINE));
 }
 
 #[test]

@@ -1,16 +1,14 @@
 //! The Lagrange basis on a cell's lattice, as a change of basis from Bernstein polynomials.
 
-use std::sync::OnceLock;
-
-use super::{Cell, Order, bernstein, lattice};
+use super::{Cell, Order, Tables, bernstein, lattice};
 
 /// Bernstein coefficients of the Lagrange functions: row-major, `[bernstein][node]`, both in lattice order.
 ///
 /// The control net of an element is this matrix times its nodes.
 #[must_use]
 pub fn to_bernstein(cell: Cell, order: Order) -> &'static [f64] {
-    static TABLES: [[OnceLock<Vec<f64>>; 4]; 8] = [const { [const { OnceLock::new() }; 4] }; 8];
-    TABLES[cell as usize][order.get() - 1].get_or_init(|| {
+    static TABLES: Tables<Vec<f64>> = Tables::new();
+    TABLES.get(cell, order, || {
         let p = order.get() as f64;
         let rows: Vec<f64> = lattice(cell, order)
             .iter()

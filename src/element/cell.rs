@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// Polynomial order of a mesh, 1 to 4.
+/// Polynomial order of a mesh, 1 to [`Order::MAX`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(try_from = "u8", into = "u8")]
 pub struct Order(u8);
@@ -18,23 +18,21 @@ impl Order {
     /// An order from a number.
     ///
     /// # Errors
-    /// [`OrderOutOfRange`] outside 1 to 4.
+    /// [`OrderOutOfRange`] outside 1 to [`Order::MAX`].
     pub fn new(p: usize) -> Result<Order, OrderOutOfRange> {
-        match u8::try_from(p) {
-            Ok(small @ 1..=4) => Ok(Order(small)),
-            _ => Err(OrderOutOfRange(p)),
-        }
+        let known = (Order::LINEAR.get()..=Order::MAX.get()).contains(&p);
+        if known { Ok(Order(p as u8)) } else { Err(OrderOutOfRange(p)) }
     }
 
     /// The order as a number.
     #[must_use]
-    pub fn get(self) -> usize {
-        usize::from(self.0)
+    pub const fn get(self) -> usize {
+        self.0 as usize
     }
 
     /// All orders, rising.
     pub fn all() -> impl Iterator<Item = Order> {
-        (1..=4).map(Order)
+        (Order::LINEAR.0..=Order::MAX.0).map(Order)
     }
 }
 
@@ -63,9 +61,9 @@ impl fmt::Display for Order {
     }
 }
 
-/// A polynomial order that is not 1, 2, 3 or 4.
+/// A polynomial order that there is not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("polynomial order {0} is outside 1 to 4")]
+#[error("polynomial order {0} is outside 1 to {max}", max = Order::MAX.get())]
 pub struct OrderOutOfRange(pub usize);
 
 /// The shapes of mesh elements, of every dimension.

@@ -1,9 +1,7 @@
 //! From the rim of a triangle or quadrilateral into its inside: the smoothest polynomial with the given rim.
 
-use std::sync::OnceLock;
-
 use super::bernstein::binomial;
-use super::{Cell, Order, interior_count, interior_start, lattice};
+use super::{Cell, Order, Tables, interior_count, interior_start, lattice};
 
 /// Weights of a face's rim nodes (corners and edges) at each of its inner nodes: row-major, `[inner][rim]`.
 ///
@@ -12,8 +10,8 @@ use super::{Cell, Order, interior_count, interior_start, lattice};
 /// no ripple of the lattice's own wave length comes in. A quadrilateral takes the Coons patch of its rim.
 #[must_use]
 pub fn interior_extension(cell: Cell, order: Order) -> &'static [f64] {
-    static TABLES: [[OnceLock<Vec<f64>>; 4]; 8] = [const { [const { OnceLock::new() }; 4] }; 8];
-    TABLES[cell as usize][order.get() - 1].get_or_init(|| match cell {
+    static TABLES: Tables<Vec<f64>> = Tables::new();
+    TABLES.get(cell, order, || match cell {
         Cell::Triangle => triangle(order),
         Cell::Quad => coons(order),
         _ => Vec::new(),

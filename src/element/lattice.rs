@@ -3,9 +3,7 @@
 //! SIDS words place some interior P4 nodes at centroids of sub-triangles; its figures, Gmsh and the solvers
 //! use the equispaced lattice, and so does this module.
 
-use std::sync::OnceLock;
-
-use super::{Cell, Face, Order};
+use super::{Cell, Face, Order, Tables};
 
 /// Lattice coordinates, 0 to `p` on each axis, of an element's nodes in internal order.
 ///
@@ -13,8 +11,8 @@ use super::{Cell, Face, Order};
 /// connectivity is a prefix of every order's.
 #[must_use]
 pub fn lattice(cell: Cell, order: Order) -> &'static [[u8; 3]] {
-    static TABLES: [[OnceLock<Vec<[u8; 3]>>; 4]; 8] = [const { [const { OnceLock::new() }; 4] }; 8];
-    TABLES[cell as usize][order.get() - 1].get_or_init(|| build(cell, order.get() as u8))
+    static TABLES: Tables<Vec<[u8; 3]>> = Tables::new();
+    TABLES.get(cell, order, || build(cell, order.get() as u8))
 }
 
 /// For each node of a cell's face, in the face's own internal order, its lattice coordinates in the cell.
@@ -27,8 +25,8 @@ pub fn face_lattice(cell: Cell, face: &Face, order: Order) -> Vec<[u8; 3]> {
 /// For each edge of a cell, its nodes in the order of [`Cell::Line`]: both ends, then the inner ones from the first on.
 #[must_use]
 pub fn edge_nodes(cell: Cell, order: Order) -> &'static [Vec<usize>] {
-    static TABLES: [[OnceLock<Vec<Vec<usize>>>; 4]; 8] = [const { [const { OnceLock::new() }; 4] }; 8];
-    TABLES[cell as usize][order.get() - 1].get_or_init(|| {
+    static TABLES: Tables<Vec<Vec<usize>>> = Tables::new();
+    TABLES.get(cell, order, || {
         let inner = order.get() - 1;
         let first = |edge: usize| cell.corner_count() + edge * inner;
         let edges = cell.edges().iter().enumerate();

@@ -13,6 +13,7 @@ mod net;
 mod orientation;
 pub mod samples;
 mod subdivision;
+mod tables;
 mod volume;
 
 pub use cell::{Cell, Face, Order, OrderOutOfRange};
@@ -23,4 +24,5 @@ pub use net::Net;
 pub use orientation::{InteriorSlots, canonical, interior_count, interior_slots, interior_start, mirrored};
 pub use samples::Samples;
 pub use subdivision::corner_tets;
+pub use tables::Tables;
 pub use volume::signed_volume;

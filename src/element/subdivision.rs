@@ -6,16 +6,14 @@
 //! sub-tet is best. Hexes, prisms and pyramids give a tetrahedron at each corner of each linear sub-element (the
 //! pyramids' at the four corners of the base: an apex has no corner tetrahedron).
 
-use std::sync::OnceLock;
-
 use super::cell::lattice_points;
-use super::{Cell, Order, lattice};
+use super::{Cell, Order, Tables, lattice};
 
 /// Corner tetrahedra (local nodes) of an element's sub-elements; one list per way to cut the element.
 #[must_use]
 pub fn corner_tets(cell: Cell, order: Order) -> &'static [Vec<[u8; 4]>] {
-    static TABLES: [[OnceLock<Cuts>; 4]; 8] = [const { [const { OnceLock::new() }; 4] }; 8];
-    TABLES[cell as usize][order.get() - 1].get_or_init(|| match cell {
+    static TABLES: Tables<Cuts> = Tables::new();
+    TABLES.get(cell, order, || match cell {
         Cell::Tet => (0..3).map(|diagonal| tet(order, diagonal)).collect(),
         Cell::Pyramid => vec![subcells(cell, order, &PYRAMID_CORNERS)],
         Cell::Prism => vec![prism(order)],
