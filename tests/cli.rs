@@ -275,16 +275,17 @@ fn progress_goes_to_stderr_in_plain_lines() {
     assert!(!outcome.stdout.contains("step 1 of"), "{}", outcome.stdout);
 }
 
-/// A mesh with a wall of no CAD face between planes that have theirs: the planes' edges curve, the wall does not follow,
-/// and the thin cells between can only be made valid by taking faces off the CAD.
+/// A mesh whose far field is on no CAD face, and of which one layer of cells may be curved: the displacement of the wall does
+/// not fit into it, and the cells can only be made valid by taking faces off the CAD.
 #[test]
 fn figures_are_those_of_the_mesh_that_is_written() {
     let place = Place::new();
     let mesh = place.mesh("without_cad.msh", |parts| {
-        parts.blocks.iter_mut().filter(|b| b.entity == EntityKey::new(2, 4)).for_each(|b| b.entity.tag = 104);
+        parts.blocks.iter_mut().filter(|b| b.entity == EntityKey::new(2, 2)).for_each(|b| b.entity.tag = 102);
     });
     let report = place.dir.path().join("out/report.json");
-    let mut arguments = Input::mesh(&mesh).with(&["--max-sweeps", "0"]).arguments(&place.output());
+    let mut arguments =
+        Input::mesh(&mesh).with(&["--curve-layers", "1", "--max-sweeps", "0"]).arguments(&place.output());
     arguments.extend(args!["--report", report]);
     let outcome = sagitta(&arguments).expect(3);
     let report = json(&report);
