@@ -45,7 +45,7 @@ pub use path::paths;
 pub use periodic::{NotPeriodic, PeriodicSheet, periodic_records, periodic_sheets};
 pub use side::{Side, sides};
 pub use sizes::check_boxes;
-pub use summary::{Patch, Summary, Undecided, summary};
+pub use summary::{Patch, SUMMARY_SCHEMA, Summary, Undecided, summary};
 
 /// A set of CAD faces that mesh faces lie on.
 #[derive(Debug)]

@@ -4,18 +4,20 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use cad::{EntityId, Group, Model};
 use glam::DVec3;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Candidates, Doubt, Inference};
 use crate::mesh::{Boundary, EntityKey, Mesh, NodeId};
 
 /// Name and version of the JSON document.
-pub(super) const SCHEMA: &str = "sagitta-association-2";
+pub const SUMMARY_SCHEMA: &str = "sagitta-association-2";
 
 /// Which mesh entities lie on which CAD entities.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Summary {
-    /// [`SCHEMA`].
+    /// Name and version of this document.
+    #[schemars(extend("const" = SUMMARY_SCHEMA))]
     pub schema: &'static str,
     /// Where the association comes from.
     pub source: String,
@@ -32,7 +34,7 @@ pub struct Summary {
 }
 
 /// A patch and the CAD faces that it lies on.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Patch {
     /// The mesh entity.
     pub entity: String,
@@ -51,7 +53,7 @@ pub struct Patch {
 }
 
 /// A face or edge that is left out.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Undecided {
     /// `face` or `edge`.
     pub kind: &'static str,
@@ -114,7 +116,7 @@ pub fn summary(
         undecided.push(Undecided::new("edge", mesh, &boundary.edges[*edge], doubt));
     }
     Summary {
-        schema: SCHEMA,
+        schema: SUMMARY_SCHEMA,
         source: source.to_owned(),
         patches: patches.into_values().collect(),
         edges: candidates.strings.iter().filter(|s| !s.entities.is_empty()).map(|s| s.items.len()).sum(),

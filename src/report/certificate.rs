@@ -1,5 +1,6 @@
 //! The certificate of a mesh, as reports have it.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Bounds;
@@ -10,7 +11,7 @@ use crate::mesh::Mesh;
 const LISTED: usize = 10;
 
 /// The certificate of the whole mesh.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct CertificateReport {
     /// The smallest J / J_c of all elements whose J_c is positive.
     pub j_over_jc: Bounds,
@@ -21,7 +22,7 @@ pub struct CertificateReport {
 }
 
 /// An element to look at.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct ElementReport {
     /// Its number in the file.
     pub element: u64,
@@ -36,7 +37,7 @@ pub struct ElementReport {
 }
 
 /// What is proven of an element.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
     /// Its Jacobian is positive everywhere.

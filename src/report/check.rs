@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::certificate::CertificateReport;
@@ -13,9 +14,10 @@ use crate::mesh::Mesh;
 pub const SCHEMA: &str = "sagitta-check-2";
 
 /// The certificate of a mesh file.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct CheckReport {
-    /// [`SCHEMA`].
+    /// Name and version of this document.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: &'static str,
     /// Version of the program.
     pub version: &'static str,
@@ -32,7 +34,7 @@ pub struct CheckReport {
 }
 
 /// Verdicts on the elements of one kind.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 #[allow(missing_docs)] // the names say it
 pub struct CellCounts {
     pub cell: &'static str,

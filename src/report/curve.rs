@@ -1,5 +1,6 @@
 //! The report of a curved mesh.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::certificate::CertificateReport;
@@ -8,9 +9,10 @@ use super::certificate::CertificateReport;
 pub const SCHEMA: &str = "sagitta-report-2";
 
 /// A curved mesh in figures.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Report {
-    /// [`SCHEMA`].
+    /// Name and version of this document.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: &'static str,
     /// Version of the program.
     pub version: &'static str,
@@ -51,7 +53,7 @@ pub struct Report {
 }
 
 /// Paths as given.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 #[allow(missing_docs)] // the names say it
 pub struct Input {
     pub mesh: String,
@@ -64,7 +66,7 @@ pub struct Input {
 }
 
 /// Counts of nodes.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 #[allow(missing_docs)] // the names say it
 pub struct Nodes {
     pub linear: usize,
@@ -72,7 +74,7 @@ pub struct Nodes {
 }
 
 /// Elements of one kind.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct CellReport {
     /// `tet`, `pyramid`, `prism` or `hex`.
     pub cell: &'static str,
@@ -97,7 +99,7 @@ pub struct CellReport {
 }
 
 /// Boundary elements of one entity of the mesh file.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct PatchReport {
     /// The entity.
     pub entity: String,
@@ -114,7 +116,7 @@ pub struct PatchReport {
 }
 
 /// A boundary face that is associated with the CAD and yet not on it.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct OffCadReport {
     /// Its number in the file.
     pub element: u64,
@@ -132,7 +134,7 @@ pub struct OffCadReport {
 
 /// Curved faces on the CAD: folded where the normal leans by 90 degrees or more against the linear face's, and the face is no graph
 /// over another plane on the CAD's side.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct WallReport {
     /// How many.
     pub faces: usize,
@@ -147,7 +149,7 @@ pub struct WallReport {
 }
 
 /// A face to look at.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct WallFailure {
     /// Its number in the file.
     pub element: u64,
@@ -160,7 +162,7 @@ pub struct WallFailure {
 }
 
 /// What is proven of a face that is not proven to be free of folds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum WallVerdict {
     /// It folds.
@@ -169,8 +171,8 @@ pub enum WallVerdict {
     Undecided,
 }
 
-/// Grid-line angles ([`crate::quality::GridLines`]).
-#[derive(Clone, Copy, Debug, Serialize)]
+/// Angles at which grid lines off the walls bend from layer to layer.
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct GridLinesReport {
     /// Of the curved mesh, between the tangents of its edges.
     pub curved: Angles,
@@ -179,7 +181,7 @@ pub struct GridLinesReport {
 }
 
 /// Angles at the inner nodes of grid lines, in degrees.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct Angles {
     /// Number of grid lines with at least one inner node.
     pub lines: usize,
@@ -192,7 +194,7 @@ pub struct Angles {
 }
 
 /// What the smoother did.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct SmoothingReport {
     /// What it did at the orders below.
     pub lower_orders: Vec<LowerOrderReport>,
@@ -207,7 +209,7 @@ pub struct SmoothingReport {
 }
 
 /// What the smoother did at an order below the one asked for.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct LowerOrderReport {
     /// The order.
     pub order: u8,
@@ -222,7 +224,7 @@ pub struct LowerOrderReport {
 }
 
 /// The smallest costs of a mesh.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct Costs {
     /// Smallest `C_WCN`.
     pub c_wcn: f64,
@@ -233,7 +235,7 @@ pub struct Costs {
 }
 
 /// Counts of closest points.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 #[allow(missing_docs)] // the names say it
 pub struct Projections {
     pub count: usize,
@@ -241,7 +243,7 @@ pub struct Projections {
 }
 
 /// Time of a step.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 #[allow(missing_docs)] // the names say it
 pub struct StepReport {
     pub step: &'static str,

@@ -3,15 +3,17 @@
 use std::collections::BTreeMap;
 
 use cad::{Foot, Model};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Name and version of the JSON document.
 pub const SCHEMA: &str = "sagitta-feet-2";
 
 /// The feet of a list of points, in figures. Lengths are in the unit of the CAD file, times `scale`.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct FeetReport {
-    /// [`SCHEMA`].
+    /// Name and version of this document.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: &'static str,
     /// Version of the program.
     pub version: &'static str,
@@ -46,7 +48,7 @@ pub struct FeetReport {
 }
 
 /// A point and its distance from its foot.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct FarthestPoint {
     /// Which point it is, from 1.
     pub point: usize,
@@ -55,7 +57,7 @@ pub struct FarthestPoint {
 }
 
 /// A CAD file.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 #[allow(missing_docs)] // the names say it
 pub struct CadReport {
     pub path: String,

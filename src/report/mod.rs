@@ -5,12 +5,13 @@
 //! | [`Report`] | `sagitta curve` | [`curve`], filled by [`report()`] | `text/curve.rs` |
 //! | [`CheckReport`] | `sagitta check` | [`check`] | `text/check.rs` |
 //! | [`FeetReport`] | `sagitta project` | [`feet`] | `text/feet.rs` |
+//! | [`Groups`] | `sagitta groups` | [`groups`] | `text/groups.rs` |
 //! | [`associate::Summary`] | `sagitta link`, `curve --dry-run` | there | `text/association.rs` |
 //! | [`validate::Validation`] | `sagitta validate` | there | there |
 //!
 //! A JSON document is its struct, field by field. Its `schema` names what it is and the version, which changes when a field
 //! changes its meaning or goes away. Lengths are in the mesh's unit, times in seconds, memory in bytes, angles in degrees.
-//! Numbers are finite: what is not known is `null`.
+//! Numbers are finite: what is not known is `null`. [`schemas()`] are the JSON Schemas of all, published in `docs/schema`.
 //!
 //! [`associate::Summary`]: crate::associate::Summary
 //! [`validate::Validation`]: crate::validate::Validation
@@ -25,21 +26,27 @@ pub mod curve;
 pub mod feet;
 #[cfg(feature = "cad")]
 mod fields;
+#[cfg(feature = "cad")]
+pub mod groups;
+mod schema;
 mod text;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 pub use check::CheckReport;
+pub use schema::schemas;
 #[cfg(feature = "cad")]
 pub use {
     build::report,
     curve::Report,
     feet::{CadReport, FeetReport, end_of},
     fields::fields,
+    groups::Groups,
 };
 
 /// Proven bounds of a minimum: it is not smaller than `lower`, and a value of at most `upper` is attained.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct Bounds {
     /// No value is smaller; nothing where there is no such bound.
     pub lower: Option<f64>,

@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 
 use linkage_schema::{Code, Findings, ModelLinks, Origin};
 use rustc_hash::FxHashMap;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::linked_mesh::LinkedMesh;
 use crate::mesh::EntityKey;
 
 /// Linked faces of a boundary patch.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Coverage {
     /// The mesh entity.
     pub entity: String,

@@ -3,6 +3,7 @@
 use cad::{EdgeId, EntityId, FaceId, Group, GroupError, Model, VertexId};
 use glam::DVec3;
 use linkage_schema::{Code, Findings, ModelLinks, Origin, Target};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::called;
@@ -12,7 +13,7 @@ use crate::associate::{AssociateError, Candidate, Candidates, check_boxes};
 use crate::mesh::NodeId;
 
 /// The distances of one run of faces, edges or points.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Measured {
     /// Sheet or string.
     pub name: String,

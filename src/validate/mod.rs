@@ -25,6 +25,7 @@ use std::path::{Path, PathBuf};
 
 use cad::{Aabb, Model, ReadOptions};
 use linkage_schema::{Code, Findings, ModelLinks, Position, ReadError, Resolution, Severity};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::associate::{Numbering, ON_CAD, models_of, sides};
@@ -70,9 +71,10 @@ pub enum ValidateError {
 }
 
 /// What was found.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Validation {
-    /// [`SCHEMA`].
+    /// Name and version of this document.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: &'static str,
     /// The linkage file.
     pub linkage: PathBuf,
@@ -103,7 +105,7 @@ pub struct Validation {
 }
 
 /// A finding as it is reported.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Found {
     /// Its stable code.
     pub code: &'static str,

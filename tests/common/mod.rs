@@ -1,5 +1,5 @@
 //! What the tests of the whole program share: the program, the fixtures, the judge.
-#![allow(dead_code, unreachable_pub)] // each test file uses its part
+#![allow(dead_code, unreachable_pub, unused_imports)] // each test file uses its part
 
 use std::ffi::OsStr;
 use std::io::Write;
@@ -13,10 +13,13 @@ macro_rules! args {
     ($($argument:expr),* $(,)?) => { [$(std::ffi::OsString::from(&$argument)),*] };
 }
 
+pub mod documents;
 pub mod impatient;
 pub mod input;
 pub mod linkage;
 pub mod ugrid;
+
+pub use documents::json;
 
 /// The repository.
 pub fn root() -> &'static Path {
@@ -44,22 +47,14 @@ impl Outcome {
     }
 }
 
-/// Runs the program in the repository's root.
+/// Runs the program in the repository's root; what it prints must be as documents and tables are to be.
+#[track_caller]
 pub fn sagitta<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Outcome {
     let mut command = Command::new(env!("CARGO_BIN_EXE_sagitta"));
     let output = command.args(arguments).current_dir(root()).output().expect("the program starts");
-    Outcome {
-        code: output.status.code(),
-        stdout: String::from_utf8(output.stdout).expect("stdout is UTF-8"),
-        stderr: String::from_utf8(output.stderr).expect("stderr is UTF-8"),
-    }
-}
-
-/// A JSON file.
-#[track_caller]
-pub fn json(path: &Path) -> Value {
-    let text = std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-    serde_json::from_str(&text).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+    let stdout = String::from_utf8(output.stdout).expect("stdout is UTF-8");
+    documents::check_stdout(&stdout);
+    Outcome { code: output.status.code(), stdout, stderr: String::from_utf8(output.stderr).expect("stderr is UTF-8") }
 }
 
 /// A number in a JSON document, by JSON pointer.

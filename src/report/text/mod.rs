@@ -7,6 +7,8 @@ mod check;
 mod curve;
 #[cfg(feature = "cad")]
 mod feet;
+#[cfg(feature = "cad")]
+mod groups;
 
 use std::fmt::{self, Display};
 
