@@ -5,7 +5,9 @@
 mod common;
 
 use std::ffi::OsString;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
 use common::input::{Input, Place};
 use common::{fixture, json, names_in, number, python, root, sagitta, script};
@@ -13,22 +15,34 @@ use sagitta::formats;
 use sagitta::mesh::EntityKey;
 use serde_json::Value;
 
+/// In an order in which files that one's examples make are there for the next.
+const COMMANDS: [&str; 9] = ["curve", "check", "convert", "link", "validate", "explain", "info", "groups", "project"];
+
 #[test]
-fn help_of_every_command_has_the_examples() {
-    let commands =
-        [&[][..], &["curve"], &["check"], &["link"], &["validate"], &["explain"], &["info"], &["groups"], &["project"]];
-    for command in commands {
-        let help = sagitta([command, &["--help"]].concat()).expect(0);
+fn help_of_every_command_has_its_examples_and_exit_codes() {
+    for command in COMMANDS.map(Some).into_iter().chain([None]) {
+        let help = sagitta(command.into_iter().chain(["--help"])).expect(0);
         assert_eq!(help.stderr, "");
-        assert!(examples(&help.stdout).len() >= 7, "{command:?}: {}", help.stdout);
-        assert!(help.stdout.contains("Exit codes:"), "{command:?}: {}", help.stdout);
+        let examples = examples(&help.stdout);
+        assert!(examples.len() >= 2, "{command:?}: {}", help.stdout);
+        let own = |example: &String| command.is_none_or(|name| example.split(' ').next() == Some(name));
+        assert!(examples.iter().all(own), "{command:?}: {examples:?}");
+        let codes = help.stdout.split_once("Exit codes:\n").unwrap_or_else(|| panic!("{command:?}: {}", help.stdout)).1;
+        for code in ["  0    done", "  2    could not run"] {
+            assert!(codes.contains(code), "{command:?}: {codes}");
+        }
+        for line in help.stdout.lines().skip_while(|line| *line != "Examples:") {
+            assert!(line.len() <= 80, "{command:?}: {line}");
+        }
+        let listed = command.is_some() || COMMANDS.iter().all(|name| help.stdout.contains(&format!("\n  {name} ")));
+        assert!(listed, "{}", help.stdout);
     }
     let version = sagitta(["--version"]).expect(0);
     assert_eq!(version.stdout.trim(), format!("sagitta {}", env!("CARGO_PKG_VERSION")));
     // `explain` alone lists all codes.
-    let without_arguments = commands.iter().filter(|command| command != &&["explain"]);
-    for wrong in [&["nonsense"][..]].iter().chain(without_arguments) {
-        let told = sagitta(*wrong).expect(2);
+    let without_arguments = COMMANDS.iter().filter(|command| **command != "explain").map(|command| vec![*command]);
+    for wrong in [vec!["nonsense"], vec![]].into_iter().chain(without_arguments) {
+        let told = sagitta(&wrong).expect(2);
         assert!(told.stdout.is_empty() && told.stderr.contains("Usage: sagitta"), "{wrong:?}: {}", told.stderr);
     }
 }
@@ -75,15 +89,11 @@ fn run(commands: &[String], dir: &Path) -> String {
 
 #[test]
 fn examples_of_the_help_run() {
-    let help = sagitta(["--help"]).expect(0).stdout;
-    let commands = examples(&help);
-    let starts = commands.iter().map(|command| command.split(' ').next().unwrap()).collect::<Vec<_>>();
-    assert_eq!(
-        starts,
-        ["curve", "curve", "check", "link", "validate", "explain", "info", "groups", "project", "convert"],
-        "{help}"
-    );
-    run(&commands, tempfile::tempdir().unwrap().path());
+    let dir = tempfile::tempdir().unwrap();
+    for command in COMMANDS {
+        run(&examples(&sagitta([command, "--help"]).expect(0).stdout), dir.path());
+    }
+    run(&examples(&sagitta(["--help"]).expect(0).stdout), dir.path());
 }
 
 /// The blocks of a language in a Markdown text.
@@ -171,9 +181,11 @@ fn other_programs_read_every_kind_of_output() {
         ("all.vtu", &[]),
         ("volume.vtu", &["--volume-only"]),
     ];
+    let report = dir.path().join("report.json");
     let files = kinds.map(|(name, options)| {
         let path = dir.path().join(name);
-        curve(&path, &options.iter().map(OsString::from).collect::<Vec<_>>());
+        let options = options.iter().map(OsString::from).chain(args!["--report", report]);
+        curve(&path, &options.collect::<Vec<_>>());
         path
     });
     let head = |file: &PathBuf| String::from_utf8_lossy(&std::fs::read(file).unwrap()[..40]).into_owned();
@@ -209,12 +221,14 @@ fn other_programs_read_every_kind_of_output() {
     }
     // VTK has no curved pyramids: each is shown as a hexahedron with 27 points of its own.
     let vtk_points = first.points().len() + 103 * 27;
+    let proven = number(&json(&report), "/certificate/j_over_jc/lower");
     for (file, dimensions) in [(&files[4], 0..=3), (&files[5], 3..=3)] {
         let vtk = of(file, "pyvista");
         assert_eq!(sum(&vtk["elements"]) as usize, cells[dimensions].iter().sum::<usize>(), "{vtk}");
         assert_eq!(vtk["nodes"], vtk_points, "{vtk}");
         // VTK's volumes of curved cells are those of their linear pieces.
         assert!((number(&vtk, "/volume") / number(&reference, "/volume") - 1.0).abs() < 0.02, "{vtk} {reference}");
+        assert_eq!(number(&vtk["arrays"], "/certified_min_J_over_Jc/0"), proven, "one proven minimum");
         for (array, least) in [("certified_min_J_over_Jc", 0.4), ("C_WCN", 0.7)] {
             let smallest = number(&vtk["arrays"], &format!("/{array}/0"));
             assert!(smallest >= least && smallest <= 1.0, "{array}: {smallest}");
@@ -261,6 +275,39 @@ fn report_and_check_tell_the_same() {
         }
     }
     assert!(text.contains(&format!("written: {}", output.display())), "{text}");
+}
+
+/// `sagitta curve ... 2>&1 | head -1`: who reads goes away after a line, and the mesh is written all the same.
+#[test]
+fn a_reader_that_goes_away_does_not_stop_the_work() {
+    let dir = tempfile::tempdir().unwrap();
+    let (mesh, cad, output) = (fixture("cylinder_bl", "msh"), fixture("cylinder_bl", "step"), dir.path().join("o.msh"));
+    let report = dir.path().join("o.json");
+    let arguments = args!["curve", mesh, "--cad", cad, "--order", "2", "-o", output, "--report", report];
+    let mut child = Command::new(env!("CARGO_BIN_EXE_sagitta"))
+        .args(arguments)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let mut first = String::new();
+    BufReader::new(child.stderr.take().unwrap()).read_line(&mut first).unwrap();
+    assert!(first.contains("step 1 of 7"), "{first}");
+    assert_eq!(child.wait().unwrap().code(), Some(0), "nothing went wrong");
+    assert!(formats::read(&output).is_ok());
+    json(&report);
+}
+
+/// Results that cannot be printed for another reason are an error that names what is wrong.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_behind_stdout_is_an_error() {
+    let full = std::fs::File::options().write(true).open("/dev/full").unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_sagitta")).args(["explain", "ML503"]).stdout(full).output().unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{told}");
+    assert!(told.starts_with("sagitta: standard output: ") && told.lines().count() == 1, "{told}");
 }
 
 #[test]

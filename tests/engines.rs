@@ -36,5 +36,6 @@ fn an_unknown_engine_is_refused_by_name() {
     let (linear, cad) = (fixture("wing_sharp", "msh"), fixture("wing_sharp", "step"));
     let wrong = args!["curve", linear, "--cad", cad, "--order", "2", "-o", "never.msh", "--engine", "steam"];
     let outcome = sagitta(wrong).expect(2);
-    assert!(outcome.stderr.contains("\"steam\" is no engine: give quasi-newton or gradient"), "{}", outcome.stderr);
+    let words = ["'steam'", "--engine", "quasi-newton", "gradient"];
+    assert!(words.iter().all(|word| outcome.stderr.contains(word)), "{}", outcome.stderr);
 }

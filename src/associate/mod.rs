@@ -23,6 +23,7 @@ mod linkage;
 mod numbering;
 mod path;
 mod periodic;
+mod propose;
 mod side;
 mod sizes;
 mod summary;
@@ -43,6 +44,7 @@ pub use linkage::{Linkage, LinkageError, linked, models_of, own_geometry, same_f
 pub use numbering::{Numbering, Part, UnknownZone};
 pub use path::paths;
 pub use periodic::{NotPeriodic, PeriodicSheet, periodic_records, periodic_sheets};
+pub use propose::{Proposal, propose};
 pub use side::{Side, sides};
 pub use sizes::check_boxes;
 pub use summary::{Patch, SUMMARY_SCHEMA, Summary, Undecided, summary};

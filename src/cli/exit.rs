@@ -6,11 +6,24 @@ pub(super) const DONE: u8 = 0;
 pub(super) const FINDINGS: u8 = 1;
 /// Wrong use or bad input: nothing was written.
 pub(super) const COULD_NOT_RUN: u8 = 2;
-/// Certified, but some boundary faces are not on the CAD as they should be.
-pub(super) const GIVEN_UP: u8 = 3;
+/// Certified, but some boundary faces are off the CAD.
+pub(super) const OFF_CAD: u8 = 3;
 /// Not every element is proven valid.
 pub(super) const NOT_CERTIFIED: u8 = 4;
 /// Ended before it was done; certified.
 pub(super) const STOPPED: u8 = 5;
 /// Interrupted twice: ended at once, nothing was written.
 pub(super) const INTERRUPTED: u8 = 130;
+
+/// What a code means, for the help.
+pub(super) fn meaning(code: u8) -> &'static str {
+    match code {
+        DONE => "done; what is proven or checked holds",
+        FINDINGS => "the linkage file has errors or warnings (validate)",
+        COULD_NOT_RUN => "could not run: wrong options or bad input; nothing is written",
+        OFF_CAD => "certified, but some boundary faces are off the CAD (curve)",
+        NOT_CERTIFIED => "not all elements (project: closest points) are proven",
+        STOPPED => "stopped early: limit or interrupt; certified (curve)",
+        _ => "interrupted twice: ended at once, nothing is written",
+    }
+}

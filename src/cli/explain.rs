@@ -9,16 +9,16 @@ use crate::cli::output::{Failure, print};
 /// Options of `sagitta explain`.
 #[derive(Args)]
 pub(super) struct Options {
-    /// Codes, as ML302; all where none is given
+    /// Codes such as ML302 [default: all]
     codes: Vec<String>,
 }
 
-/// A code that there is not.
+/// A code that does not exist.
 #[derive(Debug, thiserror::Error)]
 #[error("there is no code {0:?}; `sagitta explain` lists all")]
 struct UnknownCode(String);
 
-/// Tells what codes of findings mean.
+/// Prints what codes of findings mean.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     if options.codes.is_empty() {
         let lines =

@@ -17,13 +17,13 @@ use crate::mesh::Mesh;
 pub(super) struct Options {
     /// A CAD, mesh or linkage file
     file: PathBuf,
-    /// Seconds after which reading CAD is given up
+    /// Seconds after which reading CAD is abandoned
     #[cfg(feature = "cad")]
     #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = super::with_cad::positive)]
     cad_timeout: f64,
 }
 
-/// Tells what a file holds; its kind is found by its content.
+/// Describes a file; its kind is found by its content.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let path = &options.file;
     let text = match kind(path)? {

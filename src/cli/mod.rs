@@ -1,15 +1,17 @@
 //! The commands of the `sagitta` program.
 //!
-//! Exit codes: 0 done and certified, or clean; 1 `validate` has findings; 2 could not run; 3 certified with some faces not on the CAD;
-//! 4 not certified (`project`: some feet not proven); 5 stopped early, certified. Results go to stdout, progress and errors to stderr.
+//! Arguments are parsed here and results printed; the work is that of the library. Results go to stdout, progress and messages to stderr.
+//!
+//! Exit codes: 0 done and certified, or clean; 1 `validate` has findings; 2 could not run; 3 certified with some faces off the CAD;
+//! 4 not certified (`project`: some closest points not proven); 5 stopped early, certified; 130 interrupted twice.
 
 mod check;
 mod convert;
-mod examples;
 #[cfg_attr(not(feature = "cad"), allow(dead_code))] // some codes are of commands that need CAD
 mod exit;
 mod explain;
 mod form;
+mod help;
 mod info;
 mod output;
 #[cfg(feature = "cad")]
@@ -22,12 +24,12 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use crate::formats::cgns;
-use examples::EXAMPLES;
 use exit::{COULD_NOT_RUN, DONE};
+use output::message;
 
 /// Curves linear viscous meshes onto their CAD: P1 in, P2, P3 or P4 out, every element certified valid.
 #[derive(Parser)]
-#[command(name = "sagitta", version, after_help = EXAMPLES)]
+#[command(name = "sagitta", version, after_help = help::program())]
 struct Program {
     #[command(subcommand)]
     command: Command,
@@ -38,17 +40,17 @@ enum Command {
     #[cfg(feature = "cad")]
     #[command(flatten)]
     WithCad(with_cad::Command),
-    /// Certify any mesh of order 1 to 4: is every element's Jacobian positive everywhere?
-    #[command(after_help = EXAMPLES)]
+    /// Certify a mesh of order 1 to 4: is every element's Jacobian positive everywhere?
+    #[command(after_help = help::check())]
     Check(check::Options),
     /// Write a mesh in another format, with its patches and groups
-    #[command(after_help = EXAMPLES)]
+    #[command(after_help = help::convert())]
     Convert(convert::Options),
-    /// Tell what the code of a finding means
-    #[command(after_help = EXAMPLES)]
+    /// Explain the codes of findings
+    #[command(after_help = help::explain())]
     Explain(explain::Options),
-    /// Tell what a CAD, mesh or linkage file holds
-    #[command(after_help = EXAMPLES)]
+    /// Describe a CAD, mesh or linkage file
+    #[command(after_help = help::info())]
     Info(info::Options),
 }
 
@@ -68,7 +70,7 @@ pub fn run(arguments: Vec<OsString>) -> ExitCode {
         Ok(program) => program,
         Err(error) => {
             let code = if error.use_stderr() { COULD_NOT_RUN } else { DONE };
-            // Nothing can be reported to someone whose stderr is gone.
+            // Where stderr is gone there is no one to tell.
             let _ = error.print();
             return code.into();
         }
@@ -84,7 +86,7 @@ pub fn run(arguments: Vec<OsString>) -> ExitCode {
     match outcome {
         Ok(code) => code.into(),
         Err(error) => {
-            eprintln!("sagitta: {error}");
+            message(format_args!("sagitta: {error}"));
             COULD_NOT_RUN.into()
         }
     }

@@ -1,6 +1,8 @@
-//! What commands hand out: text on stdout, JSON files, and why they could not.
+//! What commands hand out: results on stdout, messages on stderr, JSON files. A reader that went away is no failure: a mesh is written
+//! although nobody reads on (`sagitta curve ... 2>&1 | head -1`).
 
-use std::io::Write;
+use std::fmt::Display;
+use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 
 use crate::formats;
@@ -8,12 +10,23 @@ use crate::formats;
 /// Whatever stops a command; its message is complete.
 pub(super) type Failure = Box<dyn std::error::Error>;
 
-/// Prints a result on stdout; a reader that went away is no failure.
+/// Prints a result on stdout.
+///
+/// # Errors
+/// Stdout takes nothing more, for another reason than that its reader went away: a full disk.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
-    match writeln!(std::io::stdout().lock(), "{text}") {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error.into()),
+    let mut stdout = io::stdout().lock();
+    match writeln!(stdout, "{text}").and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(format!("standard output: cannot be written: {error}").into())
+        }
         _ => Ok(()),
     }
+}
+
+/// Writes a line on stderr; where that fails there is no one left to say so to.
+pub(super) fn message(text: impl Display) {
+    let _ = writeln!(io::stderr().lock(), "{text}");
 }
 
 /// Writes a JSON document through a temporary name.

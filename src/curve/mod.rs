@@ -32,6 +32,7 @@
 
 pub mod below;
 pub mod checkpoint;
+mod checkpointing;
 mod driver;
 mod error;
 mod input;
@@ -46,12 +47,15 @@ pub mod proof;
 pub mod recover;
 mod settings;
 mod smoothing;
+mod trace;
 pub mod wall;
 pub mod wall_state;
 
+pub use checkpointing::Checkpointing;
 pub use driver::{Curved, curve};
 pub use error::{Error, JobError};
 pub use job::Job;
 pub use observer::{Observer, Step};
 pub use orders::LowerOrder;
 pub use settings::Settings;
+pub use trace::Trace;

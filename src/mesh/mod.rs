@@ -9,6 +9,7 @@ mod entity;
 mod face_key;
 mod ids;
 mod incidence;
+mod linear_positions;
 mod parts;
 pub mod periodic;
 mod zone;
@@ -25,6 +26,7 @@ pub use entity::{Entity, EntityKey, Periodic, PhysicalName};
 pub use face_key::FaceKey;
 pub use ids::{ElementId, NodeId, TooMany};
 pub use incidence::Incidence;
+pub use linear_positions::{NotItsLinear, linear_positions};
 pub use parts::{Inconsistent, Parts};
 pub use zone::Zone;
 

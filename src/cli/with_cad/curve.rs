@@ -6,16 +6,14 @@ use std::time::Duration;
 
 use clap::Args;
 
-use super::keeper::Keeper;
-use super::progress::Teller;
+use super::progress::Monitor;
 use super::reading::Reading;
-use super::trace::Trace;
-use super::values::positive;
+use super::values::{fraction, order, positive};
 use crate::associate::Choice;
-use crate::cli::exit::{DONE, GIVEN_UP, NOT_CERTIFIED, STOPPED};
+use crate::cli::exit::{DONE, NOT_CERTIFIED, OFF_CAD, STOPPED};
 use crate::cli::form::{self, Form};
-use crate::cli::output::{Failure, print, write_json};
-use crate::curve::{Curved, Job, Settings};
+use crate::cli::output::{Failure, message, print, write_json};
+use crate::curve::{Checkpointing, Curved, Job, Settings, Trace};
 use crate::element::Order;
 use crate::formats;
 use crate::report::{fields, report};
@@ -26,10 +24,10 @@ use crate::smooth;
 pub(in crate::cli) struct Options {
     #[arg(help = form::mesh("The linear mesh"))]
     mesh: PathBuf,
-    /// The CAD it was made on: STEP, IGES or BREP
+    /// The CAD that the mesh was made on: STEP, IGES or BREP
     #[arg(long, value_name = "FILE")]
     cad: PathBuf,
-    /// MeshLink file that periodic mesh and CAD together; without it the mesh's entity tags do, or else geometry
+    /// MeshLink file that links mesh and CAD [default: the mesh's entity tags where they are the CAD's numbers, else geometry]
     #[arg(long, value_name = "LINK.xml")]
     linkage: Option<PathBuf>,
     /// Polynomial order of the curved mesh: 2, 3 or 4
@@ -37,7 +35,7 @@ pub(in crate::cli) struct Options {
     order: Order,
     #[arg(short, long, value_name = "OUT", required_unless_present = "dry_run", help = form::output("The curved mesh"))]
     output: Option<PathBuf>,
-    /// Tell what lies on what, and stop there
+    /// Report which patches lie on which CAD faces, and stop there
     #[arg(long)]
     dry_run: bool,
     /// Curve these patches only: physical names or surface numbers
@@ -46,13 +44,13 @@ pub(in crate::cli) struct Options {
     /// Leave these patches straight
     #[arg(long, value_name = "PATCH,...", value_delimiter = ',')]
     straight: Vec<String>,
-    /// Write the report as JSON too
+    /// Also write the report as JSON
     #[arg(long, value_name = "R.json")]
     report: Option<PathBuf>,
     #[command(flatten)]
     reading: Reading,
-    /// How far a linear node may be from its CAD entity; share of the mesh's box
-    #[arg(long, value_name = "SHARE", default_value_t = 1e-3, value_parser = positive)]
+    /// How far a linear node may be from its CAD entity, as a fraction of the mesh's bounding-box diagonal
+    #[arg(long, value_name = "FRACTION", default_value_t = 1e-3, value_parser = positive)]
     max_offset: f64,
     /// Keep all linear nodes where they are
     #[arg(long)]
@@ -60,49 +58,49 @@ pub(in crate::cli) struct Options {
     /// Keep nodes on curved walls where projection put them
     #[arg(long)]
     freeze_walls: bool,
-    /// Begin at the order itself; without it the mesh is curved to P2 first, and each order begins where the one below ended
+    /// Begin at the order itself [default: curve to P2 first, and begin each order where the one below ended]
     #[arg(long)]
     direct: bool,
-    /// Curve this many layers of elements off curved walls, and leave those beyond straight; `auto` lets the walls' displacement
-    /// end where it has fallen to nothing
+    /// Curve this many layers of elements off curved walls, and leave those beyond straight; `auto`: as far as the walls'
+    /// displacement reaches
     #[arg(long, value_name = "auto|N", default_value = "auto", value_parser = layers)]
     curve_layers: Layers,
-    /// Elements whose cost is below are worked on (0 to 1)
-    #[arg(long, value_name = "0..1", default_value_t = 0.8, value_parser = share)]
+    /// Smooth elements whose cost is below this (0 to 1)
+    #[arg(long, value_name = "0..1", default_value_t = 0.8, value_parser = fraction)]
     threshold: f64,
     /// Weight of shape against size, equation (2); lower it to 0.3 where Jacobians stay small [default: (p-1)/p]
-    #[arg(long, value_name = "0..1", value_parser = share)]
+    #[arg(long, value_name = "0..1", value_parser = fraction)]
     alpha: Option<f64>,
-    /// What moves the nodes: quasi-newton, or gradient, the paper's engine, to compare with
-    #[arg(long, value_name = "ENGINE", default_value_t, value_parser = engine)]
+    /// What moves the nodes
+    #[arg(long, value_enum, value_name = "ENGINE", default_value_t)]
     engine: smooth::Engine,
-    /// Write the costs after each sweep, with its time, as CSV
+    /// Write the costs after each sweep, with the time, as CSV
     #[arg(long, value_name = "T.csv")]
     trace: Option<PathBuf>,
-    /// Most sweeps over the active nodes at each order
+    /// Largest number of sweeps over the active nodes at each order
     #[arg(long, value_name = "N", default_value_t = 200)]
     max_sweeps: usize,
-    /// Density of the closing survey, in multiples of the order
+    /// Divisions of an edge at which costs are surveyed in the end, in multiples of the order
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u8).range(1..=16))]
     survey_factor: u8,
     /// Threads to use [default: all cores]
     #[arg(long, value_name = "N")]
     threads: Option<NonZeroUsize>,
-    /// Write the mesh even if not every element is proven valid
+    /// Write the mesh even if not all elements are proven valid and all walls free of folds
     #[arg(long)]
     keep_invalid: bool,
     #[command(flatten)]
     form: Form,
-    /// Seconds after which smoothing ends; what is there by then is certified and written
+    /// Seconds after which smoothing ends; the mesh as it is then is certified and written
     #[arg(long, value_name = "S", value_parser = positive)]
     time_limit: Option<f64>,
-    /// Keep the state of the smoothing in this file, to go on from after a crash or a full queue
+    /// Keep the state of the smoothing in this file, to resume from after a crash or the end of a job
     #[arg(long, value_name = "FILE")]
     checkpoint: Option<PathBuf>,
-    /// Sweeps from one checkpoint to the next; it is written at the end of a round of 10 to 40 sweeps
+    /// Least number of sweeps between checkpoints, which are written at the end of rounds of 10 to 40 sweeps
     #[arg(long, value_name = "N", default_value_t = 20, requires = "checkpoint")]
     checkpoint_every: usize,
-    /// Go on from a checkpoint, to the same bytes as without the interruption
+    /// Resume from a checkpoint, to the same bytes as without the interruption
     #[arg(long, value_name = "FILE")]
     resume: Option<PathBuf>,
     /// No progress on stderr
@@ -114,28 +112,12 @@ pub(in crate::cli) struct Options {
 #[derive(Clone, Copy, Debug)]
 struct Layers(Option<NonZeroUsize>);
 
-fn order(text: &str) -> Result<Order, String> {
-    let wrong = || format!("{text:?} is not an order: give 2, 3 or 4");
-    let order = text.trim_start_matches(['P', 'p']).parse::<usize>().ok().and_then(|p| Order::new(p).ok());
-    order.filter(|&order| order > Order::LINEAR).ok_or_else(wrong)
-}
-
-fn share(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok().filter(|v| (0.0..=1.0).contains(v));
-    value.ok_or_else(|| format!("{text:?} is not between 0 and 1"))
-}
-
 fn layers(text: &str) -> Result<Layers, String> {
     if text == "auto" {
         return Ok(Layers(None));
     }
     let number = text.parse::<NonZeroUsize>();
     number.map(|number| Layers(Some(number))).map_err(|_| format!("{text:?} is neither auto nor a number from 1"))
-}
-
-fn engine(text: &str) -> Result<smooth::Engine, String> {
-    let known = smooth::Engine::ALL.into_iter().find(|engine| engine.name() == text);
-    known.ok_or_else(|| format!("{text:?} is no engine: give quasi-newton or gradient"))
 }
 
 impl Options {
@@ -179,7 +161,7 @@ impl Options {
     }
 }
 
-/// Curves a mesh, writes it, and tells how it went.
+/// Curves a mesh, writes it, and prints the report.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     if let Some(output) = &options.output {
         formats::check_output(output)?;
@@ -195,17 +177,17 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
         return dry_run(&job, options.report.as_deref());
     };
     let limit = options.time_limit.map(Duration::from_secs_f64);
-    let mut teller = Teller::new(options.quiet).stoppable(limit)?;
-    let mut trace = Trace::new(&mut teller);
-    let mut keeper = Keeper::new(&mut trace, options.checkpoint.clone(), options.checkpoint_every);
-    let curved = job.run(&mut keeper);
-    if let Some(failure) = keeper.failure {
-        eprintln!("sagitta: the last checkpoint was not written: {failure}");
+    let mut monitor = Monitor::new(options.quiet).stoppable(limit)?;
+    let mut trace = Trace::new(&mut monitor);
+    let mut checkpointing = Checkpointing::new(&mut trace, options.checkpoint.clone(), options.checkpoint_every);
+    let curved = job.run(&mut checkpointing);
+    if let Some(failure) = checkpointing.failure() {
+        message(format_args!("sagitta: the last checkpoint was not written: {failure}"));
     }
     if let (Some(path), Ok(curved)) = (&options.trace, &curved) {
         trace.write(path, &curved.smoothed)?;
     }
-    teller.finish();
+    monitor.finish();
     let curved = curved?;
     let report = report(&job, &curved);
     let certified = curved.is_certified();
@@ -216,19 +198,20 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
         write_json(path, &report)?;
     }
     print(&report.to_string())?;
-    if let Some(stop) = teller.stop {
+    if let Some(stop) = monitor.stop {
         print(&stop.to_string())?;
     }
     let written = output.display();
     if !certified && !options.keep_invalid {
-        eprintln!("sagitta: {written}: not written, as not every element is proven valid (--keep-invalid writes it)");
+        let why = "not written, as not all elements are proven valid and all walls free of folds";
+        message(format_args!("sagitta: {written}: {why} (--keep-invalid writes it)"));
     } else {
         print(&format!("written: {written}"))?;
     }
     Ok(exit_code(&curved))
 }
 
-/// Tells what lies on what.
+/// Prints which patches lie on which CAD faces.
 fn dry_run(job: &Job, report: Option<&Path>) -> Result<u8, Failure> {
     let summary = job.association()?;
     if let Some(path) = report {
@@ -250,7 +233,7 @@ fn exit_code(curved: &Curved) -> u8 {
     } else if curved.smoothed.stopped {
         STOPPED
     } else if !curved.off_cad.is_empty() {
-        GIVEN_UP
+        OFF_CAD
     } else {
         DONE
     }

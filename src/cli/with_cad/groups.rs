@@ -19,7 +19,7 @@ pub(in crate::cli) struct Options {
     /// Print them as JSON
     #[arg(long)]
     json: bool,
-    /// Seconds after which reading the CAD is given up
+    /// Seconds after which reading the CAD is abandoned
     #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = positive)]
     cad_timeout: f64,
 }

@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::reading::Reading;
 use super::values::positive;
-use crate::associate::{self, AssociateError, Candidates, Inference, Tolerance, associate, infer};
+use crate::associate::{self, Proposal, propose};
 use crate::cli::exit::DONE;
 use crate::cli::form;
 use crate::cli::output::{Failure, print, write_json};
@@ -15,29 +15,26 @@ use crate::formats;
 use crate::mesh::{Boundary, Mesh};
 use crate::validate::read_linear;
 
-/// A point may be this far from what its tag names; share of the mesh's box.
-const MAX_OFFSET: f64 = 1e-3;
-
 /// Options of `sagitta link`.
 #[derive(Args)]
 pub(in crate::cli) struct Options {
     #[arg(help = form::mesh("The linear mesh"))]
     mesh: PathBuf,
-    /// The CAD it was made on: STEP, IGES or BREP
+    /// The CAD that the mesh was made on: STEP, IGES or BREP
     #[arg(long, value_name = "FILE")]
     cad: PathBuf,
-    /// The MeshLink file
+    /// The MeshLink file to write
     #[arg(short, long, value_name = "LINK.xml")]
     output: PathBuf,
-    /// How far a node may be from its CAD entity [default: 1e-5 of the mesh's box, and a tenth of the shortest edge at the node]
+    /// How far a node may be from its CAD entity [default: 1e-5 of the mesh's bounding-box diagonal, at most a tenth of the shortest edge at the node]
     #[arg(long, value_name = "T", value_parser = positive)]
     tolerance: Option<f64>,
     #[command(flatten)]
     reading: Reading,
-    /// Take no notice of the mesh's entity tags
+    /// Ignore the mesh's entity tags
     #[arg(long)]
     ignore_tags: bool,
-    /// Write what was found, and what not, as JSON too
+    /// Also write what was associated, and what not, as JSON
     #[arg(long, value_name = "R.json")]
     report: Option<PathBuf>,
 }
@@ -55,19 +52,20 @@ struct Nothing {
     hint: String,
 }
 
-/// PeriodicConstraint a mesh to its CAD and writes the linkage.
+/// Associates a mesh with its CAD and writes the linkage.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     formats::check_folder(&options.output)?;
     let mesh = read_linear(&options.mesh)?;
     let boundary = Boundary::new(&mesh);
     let reading = options.reading.options();
     let mut model = Model::read(&options.cad, &reading)?;
-    let mut tied = classify(options, &mesh, &boundary, &model);
-    if let (true, None, Some(scale)) = (tied.candidates.sheets.is_empty(), options.reading.scale(), tied.factor) {
+    let proposal = |model: &Model| propose(&mesh, &boundary, model, options.tolerance, !options.ignore_tags);
+    let mut found = proposal(&model);
+    if let (true, None, Some(scale)) = (found.candidates.sheets.is_empty(), options.reading.scale(), found.factor) {
         model = Model::read(&options.cad, &ReadOptions { scale, ..reading })?;
-        tied = classify(options, &mesh, &boundary, &model);
+        found = proposal(&model);
     }
-    let Classified { candidates, inference, source, factor } = tied;
+    let Proposal { candidates, inference, source, factor } = found;
     if candidates.sheets.is_empty() {
         let hint = factor.map_or_else(
             || "are they in the same unit and position? If the mesh is off its CAD, raise --tolerance".to_owned(),
@@ -92,36 +90,6 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     }
     print(&format!("{summary}\nwritten: {}", options.output.display()))?;
     Ok(DONE)
-}
-
-/// What lies on what.
-struct Classified {
-    candidates: Candidates,
-    inference: Option<Inference>,
-    source: &'static str,
-    /// The factor between units by which CAD and mesh differ.
-    factor: Option<f64>,
-}
-
-/// By the mesh's tags where they hold, else by geometry.
-fn classify(options: &Options, mesh: &Mesh, boundary: &Boundary, model: &Model) -> Classified {
-    let mut factor = cad::unit_factor(size_of(mesh), model.diagonal());
-    if !options.ignore_tags {
-        let candidates = Candidates::by_tags(mesh, boundary, model);
-        match associate(mesh, boundary, model, &candidates, MAX_OFFSET) {
-            Ok(_) => return Classified { candidates, inference: None, source: "the mesh's entity tags", factor: None },
-            Err(AssociateError::Scale { factor: own, .. }) => factor = Some(own),
-            Err(_) => {}
-        }
-    }
-    let tolerance = options.tolerance.map_or_else(|| Tolerance::of(mesh), Tolerance::fixed);
-    let mut inference = infer(mesh, boundary, model, &tolerance);
-    Classified {
-        candidates: std::mem::take(&mut inference.candidates),
-        inference: Some(inference),
-        source: "geometry",
-        factor,
-    }
 }
 
 fn size_of(mesh: &Mesh) -> f64 {

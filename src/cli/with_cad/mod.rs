@@ -2,20 +2,18 @@
 
 mod curve;
 mod groups;
-mod keeper;
 mod link;
 mod model;
 mod points;
 mod progress;
 mod project;
 mod reading;
-mod trace;
 mod validate;
 mod values;
 
 use clap::Subcommand;
 
-use super::examples::EXAMPLES;
+use super::help;
 use super::output::Failure;
 
 pub(super) use model::describe;
@@ -24,19 +22,19 @@ pub(super) use values::positive;
 #[derive(Subcommand)]
 pub(super) enum Command {
     /// Curve a linear mesh onto its CAD
-    #[command(after_help = EXAMPLES)]
+    #[command(after_help = help::curve())]
     Curve(Box<curve::Options>),
     /// Write the linkage file of a mesh: which of its faces, edges and points lie on which CAD entities
-    #[command(after_help = EXAMPLES)]
+    #[command(after_help = help::link())]
     Link(link::Options),
     /// Check a linkage file: alone, against its mesh, against its CAD
-    #[command(after_help = EXAMPLES)]
+    #[command(after_help = help::validate())]
     Validate(validate::Options),
-    /// List the entities and ready groups of a CAD file, by the references that commands and linkage files take
-    #[command(after_help = EXAMPLES)]
+    /// List the entities and groups of a CAD file, by the references that commands and linkage files take
+    #[command(after_help = help::groups())]
     Groups(groups::Options),
-    /// Project points on CAD: the closest point of a set of faces and edges, and whether it is proven
-    #[command(after_help = EXAMPLES)]
+    /// Project points onto CAD: the closest point of a set of faces and edges, and whether it is proven
+    #[command(after_help = help::project())]
     Project(project::Options),
 }
 

@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::cli::exit::INTERRUPTED;
+use crate::cli::output::message;
 use crate::curve::{Observer, Step};
 use crate::element::Order;
 use crate::smooth::Progress;
@@ -31,8 +32,8 @@ impl std::fmt::Display for Stop {
     }
 }
 
-/// Tells how the work goes on, and may end the smoothing on an interrupt or after a time limit.
-pub(super) struct Teller {
+/// Shows how the work goes on, and may end the smoothing on an interrupt or after a time limit.
+pub(super) struct Monitor {
     interrupted: Arc<AtomicBool>,
     limit: Option<Duration>,
     /// Why smoothing was ended, once it was.
@@ -45,12 +46,12 @@ pub(super) struct Teller {
     last: Option<Instant>,
 }
 
-impl Teller {
+impl Monitor {
     /// Begins to count the time.
-    pub(super) fn new(quiet: bool) -> Teller {
+    pub(super) fn new(quiet: bool) -> Monitor {
         let bar = (!quiet && std::io::stderr().is_terminal()).then(spinner);
         let interrupted = Arc::default();
-        Teller {
+        Monitor {
             interrupted,
             limit: None,
             stop: None,
@@ -64,14 +65,14 @@ impl Teller {
     }
 
     /// Ends smoothing after a time limit, and takes over interrupts: the first ends the smoothing, the second the program.
-    pub(super) fn stoppable(self, limit: Option<Duration>) -> Result<Teller, ctrlc::Error> {
+    pub(super) fn stoppable(self, limit: Option<Duration>) -> Result<Monitor, ctrlc::Error> {
         let flag = Arc::clone(&self.interrupted);
         ctrlc::set_handler(move || {
             if flag.swap(true, Ordering::Relaxed) {
                 std::process::exit(i32::from(INTERRUPTED));
             }
         })?;
-        Ok(Teller { limit, ..self })
+        Ok(Monitor { limit, ..self })
     }
 
     /// Takes the live line away.
@@ -81,12 +82,12 @@ impl Teller {
         }
     }
 
-    /// Tells one thing.
-    pub(super) fn say(&self, text: String) {
+    /// Shows what is being done.
+    pub(super) fn show(&self, text: String) {
         match &self.bar {
             Some(bar) => bar.set_message(text),
             None if self.quiet => {}
-            None => eprintln!("[{:7.1} s] {text}", self.start.elapsed().as_secs_f64()),
+            None => message(format_args!("[{:7.1} s] {text}", self.start.elapsed().as_secs_f64())),
         }
     }
 }
@@ -100,7 +101,7 @@ fn spinner() -> ProgressBar {
     bar
 }
 
-impl Observer for Teller {
+impl Observer for Monitor {
     fn order(&mut self, order: Order) {
         self.order = Some(order);
     }
@@ -110,7 +111,7 @@ impl Observer for Teller {
             self.smoothing = Some(Instant::now());
         }
         let order = self.order.map_or(String::new(), |order| format!(", {order}"));
-        self.say(format!("step {} of {}: {}{order}", step as usize + 1, Step::ALL.len(), step.name()));
+        self.show(format!("step {} of {}: {}{order}", step as usize + 1, Step::ALL.len(), step.name()));
     }
 
     fn progress(&mut self, progress: &Progress) -> bool {
@@ -119,7 +120,7 @@ impl Observer for Teller {
             self.last = Some(Instant::now());
             let spent = self.smoothing.map_or(0.0, |start| start.elapsed().as_secs_f64());
             let left = spent / progress.sweep.max(1) as f64 * (progress.max_sweeps - progress.sweep) as f64;
-            self.say(format!(
+            self.show(format!(
                 "smooth{}: stage {}, sweep {} of at most {}, {} active nodes, worst cost {:.4} near ({:.4}, {:.4}, {:.4}), \
                  {} inverted, at most {left:.0} s left",
                 self.order.map_or(String::new(), |order| format!(" {order}")),

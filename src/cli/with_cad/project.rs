@@ -11,11 +11,11 @@ use clap::Args;
 use glam::DVec3;
 
 use super::points;
-use super::progress::{INTERVAL, Teller};
+use super::progress::{INTERVAL, Monitor};
 use super::reading::in_a_child;
 use super::values::positive;
 use crate::cli::exit::{DONE, NOT_CERTIFIED};
-use crate::cli::output::{Failure, print, write_json};
+use crate::cli::output::{Failure, message, print, write_json};
 use crate::formats;
 use crate::report::{CadReport, FeetReport};
 
@@ -38,13 +38,13 @@ pub(in crate::cli) struct Options {
     /// Write the counts as JSON too
     #[arg(long, value_name = "R.json")]
     report: Option<PathBuf>,
-    /// Multiply the CAD by this factor
+    /// Multiply the CAD's coordinates by this factor
     #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = positive)]
     cad_scale: f64,
     /// Threads to use [default: all cores]
     #[arg(long, value_name = "N")]
     threads: Option<NonZeroUsize>,
-    /// Seconds after which reading the CAD is given up
+    /// Seconds after which reading the CAD is abandoned
     #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = positive)]
     cad_timeout: f64,
     /// No progress on stderr
@@ -60,9 +60,9 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     if let Some(threads) = options.threads {
         rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global()?;
     }
-    let teller = Teller::new(options.quiet);
-    let outcome = project(options, &teller);
-    teller.finish();
+    let monitor = Monitor::new(options.quiet);
+    let outcome = project(options, &monitor);
+    monitor.finish();
     let (feet, report) = outcome?;
     let mut text = Vec::new();
     points::write(&mut text, &feet)?;
@@ -76,22 +76,22 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     }
     match (streamed, options.quiet) {
         (false, _) => print(&format!("{report}\nwritten: {}", options.output.display()))?,
-        (true, false) => eprintln!("{report}"),
+        (true, false) => message(&report),
         (true, true) => {}
     }
     Ok(if report.unproven == 0 { DONE } else { NOT_CERTIFIED })
 }
 
-fn project(options: &Options, teller: &Teller) -> Result<(Vec<Option<Foot>>, FeetReport), Failure> {
-    teller.say("reading the points".to_owned());
+fn project(options: &Options, monitor: &Monitor) -> Result<(Vec<Option<Foot>>, FeetReport), Failure> {
+    monitor.show("reading the points".to_owned());
     let xs = read_points(&options.points)?;
-    teller.say(format!("{} points; reading the CAD", xs.len()));
+    monitor.show(format!("{} points; reading the CAD", xs.len()));
     let model = Model::read(&options.cad, &in_a_child(options.cad_timeout, options.cad_scale))?;
     let references: Vec<String> = options.group.iter().flat_map(|list| split(list)).map(str::to_owned).collect();
     let entities = entities(&model, &references)?;
     let group = Group::of(&model, &entities).map_err(|error| format!("{}: {error}", options.cad.display()))?;
     let start = Instant::now();
-    let feet = closest(&group, &xs, teller);
+    let feet = closest(&group, &xs, monitor);
     let seconds = start.elapsed().as_secs_f64();
     let cad = CadReport::new(&model, options.cad_scale);
     let mut report = FeetReport::new(cad, &references, entities.len(), &feet, seconds);
@@ -136,16 +136,16 @@ fn entities(model: &Model, references: &[String]) -> Result<Vec<EntityId>, cad::
 }
 
 /// The feet, chunk by chunk, so that there is something to tell.
-fn closest(group: &Group, xs: &[DVec3], teller: &Teller) -> Vec<Option<Foot>> {
+fn closest(group: &Group, xs: &[DVec3], monitor: &Monitor) -> Vec<Option<Foot>> {
     let mut feet = Vec::with_capacity(xs.len());
     let (start, mut last) = (Instant::now(), Instant::now());
-    teller.say(format!("projecting {} points", xs.len()));
+    monitor.show(format!("projecting {} points", xs.len()));
     for chunk in xs.chunks(CHUNK) {
         feet.extend(group.closest_batch(chunk, &mut []));
         if last.elapsed() >= INTERVAL {
             last = Instant::now();
             let left = start.elapsed().as_secs_f64() / feet.len() as f64 * (xs.len() - feet.len()) as f64;
-            teller.say(format!("{} of {} points projected, {left:.0} s left", feet.len(), xs.len()));
+            monitor.show(format!("{} of {} points projected, {left:.0} s left", feet.len(), xs.len()));
         }
     }
     feet

@@ -11,10 +11,10 @@ use super::values::positive;
 /// Options of reading CAD.
 #[derive(Args)]
 pub(super) struct Reading {
-    /// Multiply the CAD by this factor, or `auto` to find the one between units that fits
+    /// Multiply the CAD's coordinates by this factor; `auto` finds the ratio of units that fits
     #[arg(long, value_name = "F|auto", default_value = "1", value_parser = scale)]
     cad_scale: Scale,
-    /// Seconds after which reading the CAD is given up
+    /// Seconds after which reading the CAD is abandoned
     #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = positive)]
     cad_timeout: f64,
 }

@@ -15,26 +15,26 @@ use crate::validate::{self, Job};
 pub(in crate::cli) struct Options {
     /// The MeshLink file
     linkage: PathBuf,
-    /// The linear mesh that it speaks of
+    /// The linear mesh that it was written for
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
-    /// The CAD that it speaks of: STEP, IGES or BREP
+    /// The CAD that it was written for: STEP, IGES or BREP
     #[arg(long, value_name = "FILE")]
     cad: Option<PathBuf>,
-    /// How far a linked point may be from its CAD entity [default: 1e-5 of the mesh's box]
+    /// How far a linked point may be from its CAD entity [default: 1e-5 of the mesh's bounding-box diagonal]
     #[arg(long, value_name = "T", value_parser = positive)]
     tolerance: Option<f64>,
     #[command(flatten)]
     reading: Reading,
-    /// Print JSON
+    /// Print the findings as JSON
     #[arg(long)]
     json: bool,
-    /// Notes count as findings too
+    /// Count notes as findings
     #[arg(long)]
     strict: bool,
 }
 
-/// Validates a linkage file and tells what was found.
+/// Validates a linkage file and prints what was found.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let validation = validate::validate(&Job {
         linkage: options.linkage.clone(),

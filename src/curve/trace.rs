@@ -3,12 +3,11 @@
 use std::path::Path;
 use std::time::Instant;
 
-use super::progress::Teller;
-use crate::cli::output::Failure;
-use crate::curve::{Observer, Step};
+use super::checkpoint::Work;
+use super::observer::{Observer, Step};
 use crate::element::Order;
 use crate::formats;
-use crate::smooth::{Progress, Smoothed};
+use crate::smooth::{Checkpoint, Progress, Smoothed};
 
 /// The columns that are written.
 const COLUMNS: [&str; 8] = ["seconds", "order", "sweep", "stage", "active_nodes", "c_wcn_min", "c_jac_min", "inverted"];
@@ -24,9 +23,9 @@ struct Row {
     inverted: usize,
 }
 
-/// Notes every sweep, and hands it on.
-pub(super) struct Trace<'a> {
-    teller: &'a mut Teller,
+/// Notes every sweep, and passes everything on to another observer.
+pub struct Trace<'a> {
+    observer: &'a mut dyn Observer,
     start: Option<Instant>,
     end: Option<f64>,
     order: Option<Order>,
@@ -34,13 +33,17 @@ pub(super) struct Trace<'a> {
 }
 
 impl<'a> Trace<'a> {
-    pub(super) fn new(teller: &'a mut Teller) -> Trace<'a> {
-        Trace { teller, start: None, end: None, order: None, rows: Vec::new() }
+    /// Passes on to `observer`.
+    pub fn new(observer: &'a mut dyn Observer) -> Trace<'a> {
+        Trace { observer, start: None, end: None, order: None, rows: Vec::new() }
     }
 
     /// Writes the rows. Seconds count from the beginning of the smoothing at the first order; costs are those of the last survey before the
     /// sweep, in the last row those of the mesh.
-    pub(super) fn write(&self, path: &Path, smoothed: &Smoothed) -> Result<(), Failure> {
+    ///
+    /// # Errors
+    /// [`formats::Error`] of the file.
+    pub fn write(&self, path: &Path, smoothed: &Smoothed) -> Result<(), formats::Error> {
         let end = smoothed.end;
         let last = Row {
             seconds: self.end.unwrap_or(0.0),
@@ -51,16 +54,17 @@ impl<'a> Trace<'a> {
             costs: [end.c_wcn, end.c_jac],
             inverted: end.inverted,
         };
-        let mut out = csv::Writer::from_writer(Vec::new());
-        out.write_record(COLUMNS)?;
-        for row in self.rows.iter().chain([&last]) {
-            let [wcn, jac] = row.costs.map(|cost| cost.to_string());
-            let counts = [row.order, row.sweep, row.stage, row.active_nodes, row.inverted];
-            let [order, sweep, stage, active, inverted] = counts.map(|count| count.to_string());
-            out.write_record([format!("{:.3}", row.seconds), order, sweep, stage, active, wcn, jac, inverted])?;
-        }
-        formats::write_bytes(path, &out.into_inner()?)?;
-        Ok(())
+        formats::write_file(path, |out| {
+            let mut out = csv::Writer::from_writer(out);
+            out.write_record(COLUMNS)?;
+            for row in self.rows.iter().chain([&last]) {
+                let [wcn, jac] = row.costs.map(|cost| cost.to_string());
+                let counts = [row.order, row.sweep, row.stage, row.active_nodes, row.inverted];
+                let [order, sweep, stage, active, inverted] = counts.map(|count| count.to_string());
+                out.write_record([format!("{:.3}", row.seconds), order, sweep, stage, active, wcn, jac, inverted])?;
+            }
+            out.flush()
+        })
     }
 
     fn seconds(&self) -> f64 {
@@ -71,7 +75,7 @@ impl<'a> Trace<'a> {
 impl Observer for Trace<'_> {
     fn order(&mut self, order: Order) {
         self.order = Some(order);
-        self.teller.order(order);
+        self.observer.order(order);
     }
 
     fn step(&mut self, step: Step) {
@@ -80,7 +84,7 @@ impl Observer for Trace<'_> {
             Step::Certify => self.end = Some(self.seconds()),
             _ => {}
         }
-        self.teller.step(step);
+        self.observer.step(step);
     }
 
     fn progress(&mut self, progress: &Progress) -> bool {
@@ -94,6 +98,10 @@ impl Observer for Trace<'_> {
             inverted: progress.inverted,
         });
         self.end = self.end.map(|_| self.seconds()); // recovery smooths again
-        self.teller.progress(progress)
+        self.observer.progress(progress)
+    }
+
+    fn checkpoint(&mut self, work: &Work, checkpoint: &Checkpoint) {
+        self.observer.checkpoint(work, checkpoint);
     }
 }

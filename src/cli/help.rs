@@ -1,0 +1,107 @@
+//! What stands below the help of every command: examples, and its exit codes.
+
+use super::exit::{COULD_NOT_RUN, DONE, NOT_CERTIFIED, meaning};
+#[cfg(feature = "cad")]
+use super::exit::{FINDINGS, INTERRUPTED, OFF_CAD, STOPPED};
+
+/// Of the program.
+#[cfg(feature = "cad")]
+pub(super) fn program() -> String {
+    let examples = "
+  sagitta curve fixtures/weeble/weeble.msh --cad fixtures/weeble/weeble.step \\
+      --order 3 -o weeble_p3.msh
+  sagitta check weeble_p3.msh --linear fixtures/weeble/weeble.msh";
+    let codes = [DONE, FINDINGS, COULD_NOT_RUN, OFF_CAD, NOT_CERTIFIED, STOPPED, INTERRUPTED];
+    format!("{}\n\n`sagitta COMMAND --help` has examples of each command.", below(examples, &codes))
+}
+
+/// Of the program without CAD.
+#[cfg(not(feature = "cad"))]
+pub(super) fn program() -> String {
+    let examples = "
+  sagitta check weeble_p3.msh --linear fixtures/weeble/weeble.msh
+  sagitta convert weeble_p3.msh -o weeble_p3.cgns";
+    below(examples, &[DONE, COULD_NOT_RUN, NOT_CERTIFIED])
+}
+
+#[cfg(feature = "cad")]
+pub(super) fn curve() -> String {
+    let examples = "
+  sagitta curve fixtures/weeble/weeble.msh --cad fixtures/weeble/weeble.step \\
+      --order 3 -o weeble_p3.msh
+  sagitta curve fixtures/weeble/weeble.msh --cad fixtures/weeble/weeble.step \\
+      --linkage fixtures/weeble/weeble.meshlink.xml --order 2 \\
+      -o weeble_p2.vtu --report weeble_p2.json";
+    below(examples, &[DONE, COULD_NOT_RUN, OFF_CAD, NOT_CERTIFIED, STOPPED, INTERRUPTED])
+}
+
+pub(super) fn check() -> String {
+    let examples = "
+  sagitta check fixtures/samples/hexpyrtet_p3_msh41a.msh
+  sagitta check weeble_p3.msh --linear fixtures/weeble/weeble.msh \\
+      --report weeble_check.json";
+    below(examples, &[DONE, COULD_NOT_RUN, NOT_CERTIFIED])
+}
+
+pub(super) fn convert() -> String {
+    let examples = "
+  sagitta convert fixtures/weeble/weeble.msh -o weeble.cgns
+  sagitta convert weeble_p3.msh --volume-only -o weeble_p3.vtu";
+    below(examples, &[DONE, COULD_NOT_RUN])
+}
+
+#[cfg(feature = "cad")]
+pub(super) fn link() -> String {
+    let examples = "
+  sagitta link fixtures/weeble/weeble.msh --cad fixtures/weeble/weeble.step \\
+      -o weeble_link.xml
+  sagitta link fixtures/torus/torus.msh --cad fixtures/torus/torus.step \\
+      --ignore-tags -o torus_link.xml --report torus_link.json";
+    below(examples, &[DONE, COULD_NOT_RUN])
+}
+
+#[cfg(feature = "cad")]
+pub(super) fn validate() -> String {
+    let examples = "
+  sagitta validate fixtures/weeble/weeble.meshlink.xml
+  sagitta validate fixtures/weeble/weeble.meshlink.xml \\
+      --mesh fixtures/weeble/weeble.msh --cad fixtures/weeble/weeble.step";
+    below(examples, &[DONE, FINDINGS, COULD_NOT_RUN])
+}
+
+pub(super) fn explain() -> String {
+    let examples = "
+  sagitta explain
+  sagitta explain ML503";
+    below(examples, &[DONE, COULD_NOT_RUN])
+}
+
+pub(super) fn info() -> String {
+    let examples = "
+  sagitta info fixtures/weeble/weeble.msh
+  sagitta info fixtures/weeble/weeble.meshlink.xml";
+    below(examples, &[DONE, COULD_NOT_RUN])
+}
+
+#[cfg(feature = "cad")]
+pub(super) fn groups() -> String {
+    let examples = "
+  sagitta groups fixtures/weeble/weeble.step
+  sagitta groups fixtures/cylinder_bl/cylinder_bl.igs --json";
+    below(examples, &[DONE, COULD_NOT_RUN])
+}
+
+#[cfg(feature = "cad")]
+pub(super) fn project() -> String {
+    let examples = "
+  sagitta project fixtures/weeble/weeble.step fixtures/samples/points.csv
+  sagitta project fixtures/weeble/weeble.step fixtures/samples/points.csv \\
+      --group face:2,face:3 -o feet.csv --report feet.json";
+    below(examples, &[DONE, COULD_NOT_RUN, NOT_CERTIFIED])
+}
+
+/// Lines of 80 columns at most: clap breaks longer ones on a narrow terminal, where they can no longer be pasted.
+fn below(examples: &str, codes: &[u8]) -> String {
+    let codes: Vec<String> = codes.iter().map(|&code| format!("  {code:<3}  {}", meaning(code))).collect();
+    format!("Examples:{examples}\n\nExit codes:\n{}", codes.join("\n"))
+}
