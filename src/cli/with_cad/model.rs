@@ -1,4 +1,4 @@
-//! What `sagitta info` tells of a CAD file.
+//! A CAD file as `sagitta info` describes it.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;

@@ -29,13 +29,13 @@ pub(in crate::cli) struct Options {
     cad: PathBuf,
     /// CSV file with columns x, y, z; `-` for stdin
     points: PathBuf,
-    /// The CAD entities to project on, as `sagitta groups` lists them [default: all faces and free edges]
+    /// The CAD entities to project onto, as `sagitta groups` lists them [default: all faces and free edges]
     #[arg(long, value_name = "REF,...")]
     group: Vec<String>,
     /// CSV file for the feet; `-` for stdout
     #[arg(short, long, value_name = "FEET.csv", default_value = "-")]
     output: PathBuf,
-    /// Write the counts as JSON too
+    /// Also write the counts as JSON
     #[arg(long, value_name = "R.json")]
     report: Option<PathBuf>,
     /// Multiply the CAD's coordinates by this factor
@@ -52,7 +52,7 @@ pub(in crate::cli) struct Options {
     quiet: bool,
 }
 
-/// Projects points on CAD entities, writes their feet, and tells how it went: on stdout, or on stderr where the feet go to stdout.
+/// Projects points onto CAD entities, writes their feet, and prints the report: on stdout, or on stderr where the feet go to stdout.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let streamed = options.output == Path::new("-");
     let mut files = (!streamed).then_some(&options.output).into_iter().chain(&options.report);
@@ -135,7 +135,7 @@ fn entities(model: &Model, references: &[String]) -> Result<Vec<EntityId>, cad::
     Ok(all)
 }
 
-/// The feet, chunk by chunk, so that there is something to tell.
+/// The feet, chunk by chunk, so that progress can be shown.
 fn closest(group: &Group, xs: &[DVec3], monitor: &Monitor) -> Vec<Option<Foot>> {
     let mut feet = Vec::with_capacity(xs.len());
     let (start, mut last) = (Instant::now(), Instant::now());
