@@ -77,6 +77,8 @@
 //!
 //! [`element`] is the one place that knows cells: their lattices, bases, sub-elements and sample tables.
 #![forbid(unsafe_code)]
+// They panic where the reader is gone; `cli::output` does not.
+#![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
 
 #[cfg(feature = "cad")]
 pub mod associate;
