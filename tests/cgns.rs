@@ -1,4 +1,5 @@
 //! CGNS files that we write: read again by us and checked by the CGNS library's own program.
+#![cfg(feature = "cgns")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::collections::BTreeMap;
@@ -12,7 +13,7 @@ use sagitta::mesh::elevate::elevate;
 use sagitta::mesh::{EntityKey, Mesh, NodeId};
 
 fn read(path: &Path) -> Mesh {
-    formats::read_with(path, &ReadOptions { reader: env!("CARGO_BIN_EXE_sagitta").into() }).unwrap()
+    formats::read_with(path, &ReadOptions { reader: Some(env!("CARGO_BIN_EXE_sagitta").into()) }).unwrap()
 }
 
 fn sample(name: &str) -> Mesh {
@@ -127,4 +128,42 @@ fn cgnscheck_finds_nothing() {
             .collect::<std::collections::BTreeSet<_>>();
         assert!(complaints.is_empty() || volumes.len() > 1, "{name}: {complaints:#?}\n{text}");
     }
+}
+
+/// A host program that names no reader is not started again; one that does gets the same mesh, and the same errors in content.
+#[test]
+fn a_file_is_the_same_whichever_process_parses_it() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/samples");
+    let reader = ReadOptions { reader: Some(env!("CARGO_BIN_EXE_sagitta").into()) };
+    let mut compared = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|ending| ending != "cgns") {
+            continue;
+        }
+        let [here, there] = [formats::read(&path), formats::read_with(&path, &reader)]
+            .map(|read| read.map_err(|error| error.to_string()));
+        assert_eq!(here, there, "{}", path.display());
+        compared += 1;
+    }
+    assert!(compared > 15, "{compared}");
+}
+
+#[test]
+fn a_damaged_file_is_refused_in_this_process_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let whole = std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/samples/mixed_bc.cgns")).unwrap();
+    let path = folder.path().join("cut.cgns");
+    std::fs::write(&path, &whole[..whole.len() / 2]).unwrap();
+    let told = formats::read(&path).unwrap_err().to_string();
+    assert!(told.contains("cut.cgns: the HDF5 library cannot read it"), "{told}");
+}
+
+#[test]
+fn a_reader_that_does_not_serve_is_told() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/samples/mixed_bc.cgns");
+    let told =
+        |reader: &str| formats::read_with(&path, &ReadOptions { reader: Some(reader.into()) }).unwrap_err().to_string();
+    assert!(told("/bin/true").contains("does it call cgns::serve_reader"), "{}", told("/bin/true"));
+    assert!(told("/bin/none").contains("the reading process /bin/none cannot be run"), "{}", told("/bin/none"));
 }

@@ -95,7 +95,7 @@ fn grids() -> [(PathBuf, Vec<u8>); 2] {
 fn fuzz(format: &Format, seed: u64) {
     let samples = samples(format);
     let dir = tempfile::tempdir().unwrap();
-    let options = ReadOptions { reader: env!("CARGO_BIN_EXE_sagitta").into() };
+    let options = ReadOptions { reader: Some(env!("CARGO_BIN_EXE_sagitta").into()) };
     let mut dice = Random(seed);
     let (mut read, mut refused) = (0, 0);
     for n in 0..format.mutations {

@@ -57,7 +57,7 @@ fn files() -> Vec<PathBuf> {
 
 /// Reading CGNS takes the program itself.
 fn read(path: &Path) -> Result<Mesh, formats::Error> {
-    formats::read_with(path, &ReadOptions { reader: env!("CARGO_BIN_EXE_sagitta").into() })
+    formats::read_with(path, &ReadOptions { reader: Some(env!("CARGO_BIN_EXE_sagitta").into()) })
 }
 
 fn counts(mesh: &Mesh) -> BTreeMap<String, u64> {

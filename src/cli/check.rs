@@ -4,17 +4,17 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::{form, input};
 use crate::certify::{self, Settings};
 use crate::cli::exit::{DONE, NOT_CERTIFIED};
 use crate::cli::output::{Failure, print, write_json};
-use crate::formats;
 use crate::mesh::{self, linear_positions};
 use crate::report::CheckReport;
 
 /// Options of `sagitta check`.
 #[derive(Args)]
 pub(super) struct Options {
-    /// A mesh of order 1 to 4, written by any program
+    #[arg(help = form::mesh("A mesh of order 1 to 4, written by any program"))]
     mesh: PathBuf,
     /// The linear mesh that it was made from: the reference of its Jacobians [default: each element's own corners]
     #[arg(long, value_name = "P1MESH")]
@@ -35,11 +35,11 @@ struct NotItsLinear {
 
 /// Certifies a mesh and prints what is proven.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
-    let mesh = formats::read(&options.mesh)?;
+    let mesh = input::mesh(&options.mesh)?;
     let unperturbed = match &options.linear {
         None => None,
         Some(path) => {
-            let linear = formats::read(path)?;
+            let linear = input::mesh(path)?;
             let matched = linear_positions(&mesh, &linear).map_err(|why| NotItsLinear {
                 linear: path.display().to_string(),
                 curved: options.mesh.display().to_string(),

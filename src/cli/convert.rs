@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::form::{self, Form};
+use super::input;
 use crate::cli::exit::DONE;
 use crate::cli::output::{Failure, print};
 use crate::formats;
@@ -23,7 +24,7 @@ pub(super) struct Options {
 /// Reads a mesh and writes it in another format.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     formats::check_output(&options.output)?;
-    let mesh = formats::read(&options.mesh)?;
+    let mesh = input::mesh(&options.mesh)?;
     formats::write(&options.output, &mesh, &options.form.with(&[]))?;
     for note in mesh.notes() {
         print(&format!("note: {note}"))?;

@@ -27,7 +27,7 @@ pub(super) struct Options {
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let path = &options.file;
     let text = match kind(path)? {
-        Kind::Mesh => mesh(&formats::read(path)?)?,
+        Kind::Mesh => mesh(&super::input::mesh(path)?)?,
         Kind::Linkage => linkage(path)?,
         Kind::Cad => cad_model(options)?,
     };

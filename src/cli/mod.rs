@@ -13,6 +13,7 @@ mod explain;
 mod form;
 mod help;
 mod info;
+mod input;
 mod output;
 #[cfg(feature = "cad")]
 mod with_cad;
@@ -23,6 +24,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+#[cfg(feature = "cgns")]
 use crate::formats::cgns;
 use exit::{COULD_NOT_RUN, DONE};
 use output::message;
@@ -54,17 +56,21 @@ enum Command {
     Info(info::Options),
 }
 
+/// Hidden subcommands, each with a file: what reads it in a child process, as malformed files crash the libraries that do.
+const READERS: &[(&str, fn(&Path) -> ExitCode)] = &[
+    #[cfg(feature = "cad")]
+    (cad::READER_SUBCOMMAND, cad::serve_reader),
+    #[cfg(feature = "cgns")]
+    (cgns::READER_SUBCOMMAND, cgns::serve_reader),
+];
+
 /// Runs the program with its arguments, the first of which is its name.
 #[must_use]
 pub fn run(arguments: Vec<OsString>) -> ExitCode {
-    if let [_, word, path] = arguments.as_slice() {
-        #[cfg(feature = "cad")]
-        if word == cad::READER_SUBCOMMAND {
-            return cad::serve_reader(Path::new(path));
-        }
-        if word == cgns::READER_SUBCOMMAND {
-            return cgns::serve_reader(Path::new(path));
-        }
+    if let [_, word, path] = arguments.as_slice()
+        && let Some((_, serve)) = READERS.iter().find(|(subcommand, _)| word == subcommand)
+    {
+        return serve(Path::new(path));
     }
     let program = match Program::try_parse_from(arguments) {
         Ok(program) => program,

@@ -27,6 +27,8 @@ pub struct Job {
     pub cad_scale: Option<f64>,
     /// How the CAD is read: in this process, or by a reading program.
     pub reading: ReadOptions,
+    /// How the mesh is read.
+    pub mesh_reading: formats::ReadOptions,
     /// What is asked for.
     pub settings: Settings,
 }
@@ -36,7 +38,8 @@ impl Job {
     #[must_use]
     pub fn new(mesh: PathBuf, cad: PathBuf, linkage: Option<PathBuf>, order: Order) -> Job {
         let (reading, settings) = (ReadOptions::default(), Settings::new(order));
-        Job { mesh, cad, linkage, cad_scale: Some(1.0), reading, settings }
+        let mesh_reading = formats::ReadOptions::default();
+        Job { mesh, cad, linkage, cad_scale: Some(1.0), reading, mesh_reading, settings }
     }
 
     /// Reads the files and curves the mesh.
@@ -83,7 +86,7 @@ impl Job {
     }
 
     fn read_mesh(&self) -> Result<Mesh, JobError> {
-        let linear = formats::read(&self.mesh)?;
+        let linear = formats::read_with(&self.mesh, &self.mesh_reading)?;
         check_mesh(&linear).map_err(|cause| self.error(cause))?;
         Ok(linear)
     }

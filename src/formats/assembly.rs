@@ -81,20 +81,6 @@ impl Assembly {
         block.nodes.extend_from_slice(nodes);
     }
 
-    /// Takes elements out, given by block and place.
-    pub(super) fn withdraw(&mut self, elements: &HashSet<(usize, usize)>) {
-        let order = self.parts.order;
-        for (place, block) in self.parts.blocks.iter_mut().enumerate() {
-            if !elements.iter().any(|&(b, _)| b == place) {
-                continue;
-            }
-            let kept: Vec<usize> = (0..block.tags.len()).filter(|&n| !elements.contains(&(place, n))).collect();
-            let stride = block.stride(order);
-            block.nodes = kept.iter().flat_map(|&n| block.nodes[n * stride..][..stride].iter().copied()).collect();
-            block.tags = kept.iter().map(|&n| block.tags[n]).collect();
-        }
-    }
-
     /// The physical tag of a name: that of the group of the name, else `wish` or the next free one.
     pub(super) fn group(&mut self, dimension: u8, name: &str, wish: Option<i32>) -> i32 {
         let names = &mut self.parts.physical_names;

@@ -82,7 +82,19 @@ pub(super) fn detect(head: &Head) -> Result<&'static Format, Refusal> {
 }
 
 /// Files of formats that are not read: what they are, and what to do.
-const FOREIGN: &[fn(&Head) -> Option<Refusal>] = &[step, universal, xml];
+const FOREIGN: &[fn(&Head) -> Option<Refusal>] = &[
+    #[cfg(not(feature = "cgns"))]
+    cgns,
+    step,
+    universal,
+    xml,
+];
+
+#[cfg(not(feature = "cgns"))]
+fn cgns(head: &Head) -> Option<Refusal> {
+    let reason = "a CGNS file (HDF5), which this program was built without; build it with the Cargo feature cgns";
+    head.bytes.starts_with(b"\x89HDF\r\n\x1a\n").then(|| Refusal::unread(reason))
+}
 
 fn step(head: &Head) -> Option<Refusal> {
     head.text.starts_with(b"ISO-10303-21").then(|| Refusal::other("a STEP file, which is CAD, not a mesh"))

@@ -5,6 +5,7 @@
 //! name. What happens to files on failure is dealt with here.
 
 mod assembly;
+#[cfg(feature = "cgns")]
 pub mod cgns;
 mod detect;
 mod error;
@@ -17,7 +18,6 @@ mod output;
 mod plot3d;
 mod registry;
 mod scanner;
-mod skin;
 mod su2;
 mod turned;
 mod ugrid;
@@ -36,17 +36,15 @@ pub use registry::{REGISTRY, readable, table, writable};
 use crate::mesh::Mesh;
 
 /// How files are read.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct ReadOptions {
-    /// Program that calls [`cgns::serve_reader`] when its first argument is [`cgns::READER_SUBCOMMAND`]; default this very
-    /// program.
-    pub reader: PathBuf,
-}
-
-impl Default for ReadOptions {
-    fn default() -> ReadOptions {
-        ReadOptions { reader: std::env::current_exe().unwrap_or_else(|_| PathBuf::from("/proc/self/exe")) }
-    }
+    /// Program in which CGNS files are parsed; default none, which parses them in this process.
+    ///
+    /// Some malformed CGNS files make the HDF5 library crash, hang or eat up the memory. Who reads files of strangers gives a
+    /// program here, which may be his own: it must call `cgns::serve_reader` with the second argument when its first is
+    /// `cgns::READER_SUBCOMMAND`, before anything else. It is run with limits of time and memory, and whatever happens to it is
+    /// an error here.
+    pub reader: Option<PathBuf>,
 }
 
 /// How files are written, where a format leaves a choice.
@@ -72,7 +70,7 @@ pub fn read(path: &Path) -> Result<Mesh, Error> {
     read_with(path, &ReadOptions::default())
 }
 
-/// As [`read`], with a choice of the program that reads CGNS files.
+/// As [`read`], with a choice of the process that parses CGNS files.
 ///
 /// # Errors
 /// Those of [`read`].
@@ -114,8 +112,7 @@ fn of_name(path: &Path) -> Result<&'static Writer, Error> {
 /// # Errors
 /// [`Error::Io`].
 pub fn check_folder(path: &Path) -> Result<(), Error> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    match std::fs::metadata(folder) {
+    match std::fs::metadata(output::folder(path)) {
         Ok(metadata) if metadata.is_dir() => Ok(()),
         Ok(_) => Err(std::io::Error::other("its parent is not a folder")),
         Err(error) => Err(error),
@@ -137,7 +134,7 @@ pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), Error> {
 /// As [`write_bytes`].
 pub fn write_file(
     path: &Path,
-    content: impl FnOnce(&mut std::io::BufWriter<std::fs::File>) -> std::io::Result<()>,
+    content: impl FnOnce(&mut std::io::BufWriter<&mut std::fs::File>) -> std::io::Result<()>,
 ) -> Result<(), Error> {
     output::write(path, |part| part.stream(|out| Ok(content(out)?)))
 }

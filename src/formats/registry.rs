@@ -2,13 +2,23 @@
 
 use std::fmt::Write as _;
 
+#[cfg(feature = "cgns")]
+use super::cgns;
 use super::format::{Format, Holds};
-use super::{cgns, msh, plot3d, su2, ugrid, vtk};
+use super::{msh, plot3d, su2, ugrid, vtk};
 use crate::element::Cell;
 
 /// All formats, the most telling marks first.
-pub static REGISTRY: &[&Format] =
-    &[&msh::FORMAT, &cgns::FORMAT, &ugrid::FORMAT, &su2::FORMAT, &vtk::VTU, &vtk::LEGACY, &plot3d::FORMAT];
+pub static REGISTRY: &[&Format] = &[
+    &msh::FORMAT,
+    #[cfg(feature = "cgns")]
+    &cgns::FORMAT,
+    &ugrid::FORMAT,
+    &su2::FORMAT,
+    &vtk::VTU,
+    &vtk::LEGACY,
+    &plot3d::FORMAT,
+];
 
 /// The formats that are written.
 pub(super) fn written() -> impl Iterator<Item = &'static Format> {

@@ -54,6 +54,8 @@ pub struct Job {
     pub cad_scale: Option<f64>,
     /// How the CAD is read.
     pub reading: ReadOptions,
+    /// How the mesh is read.
+    pub mesh_reading: formats::ReadOptions,
 }
 
 /// Why nothing could be validated.
@@ -182,7 +184,7 @@ impl Found {
 /// [`ValidateError`]: a file that cannot be read. A linkage file that is broken is a finding.
 pub fn validate(job: &Job) -> Result<Validation, ValidateError> {
     let mut validation = Validation::new(job);
-    let mesh = job.mesh.as_deref().map(read_linear).transpose()?;
+    let mesh = job.mesh.as_deref().map(|path| read_linear(path, &job.mesh_reading)).transpose()?;
     let read = |path: &Path, scale| Model::read(path, &ReadOptions { scale, ..job.reading.clone() });
     let mut model = job.cad.as_deref().map(|path| read(path, validation.cad_scale)).transpose()?;
     let reading = match linkage_schema::read_path(&job.linkage) {
@@ -249,8 +251,8 @@ fn with_cad(
 ///
 /// # Errors
 /// [`ValidateError::Mesh`], [`ValidateError::NotLinear`].
-pub fn read_linear(path: &Path) -> Result<Mesh, ValidateError> {
-    let mesh = formats::read(path)?;
+pub fn read_linear(path: &Path, reading: &formats::ReadOptions) -> Result<Mesh, ValidateError> {
+    let mesh = formats::read_with(path, reading)?;
     if mesh.order() != crate::element::Order::LINEAR {
         return Err(ValidateError::NotLinear { mesh: path.to_owned(), order: mesh.order() });
     }

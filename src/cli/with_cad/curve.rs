@@ -12,6 +12,7 @@ use super::values::{fraction, order, positive};
 use crate::associate::Choice;
 use crate::cli::exit::{DONE, NOT_CERTIFIED, OFF_CAD, STOPPED};
 use crate::cli::form::{self, Form};
+use crate::cli::input;
 use crate::cli::output::{Failure, message, print, write_json};
 use crate::curve::{Checkpointing, Curved, Job, Settings, Trace};
 use crate::element::Order;
@@ -136,6 +137,7 @@ impl Options {
             linkage: self.linkage.clone(),
             cad_scale: self.reading.scale(),
             reading: self.reading.options(),
+            mesh_reading: input::reading(),
             settings: self.settings(),
         }
     }

@@ -9,8 +9,8 @@ use super::reading::Reading;
 use super::values::positive;
 use crate::associate::{self, Proposal, propose};
 use crate::cli::exit::DONE;
-use crate::cli::form;
 use crate::cli::output::{Failure, print, write_json};
+use crate::cli::{form, input};
 use crate::formats;
 use crate::mesh::{Boundary, Mesh};
 use crate::validate::read_linear;
@@ -55,7 +55,7 @@ struct Nothing {
 /// Associates a mesh with its CAD and writes the linkage.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     formats::check_folder(&options.output)?;
-    let mesh = read_linear(&options.mesh)?;
+    let mesh = read_linear(&options.mesh, &input::reading())?;
     let boundary = Boundary::new(&mesh);
     let reading = options.reading.options();
     let mut model = Model::read(&options.cad, &reading)?;

@@ -43,6 +43,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
         tolerance: options.tolerance,
         cad_scale: options.reading.scale(),
         reading: options.reading.options(),
+        mesh_reading: crate::cli::input::reading(),
     })?;
     if options.json {
         print(&serde_json::to_string_pretty(&validation)?)?;

@@ -1,128 +1,59 @@
-//! The reading child: the only process in which the HDF5 library parses a file.
+//! The reading child: a process that parses a file for its parent, as malformed ones make the HDF5 library crash or hang.
 
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::BufWriter;
+use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::process::ExitCode;
+use std::time::Duration;
 
-use hdf5_metno as hdf5;
-use hdf5_metno::types::{FixedAscii, TypeDescriptor, VarLenAscii};
+use cad::child::{ChildError, Limits, run};
 
-use super::labels::{self, kind};
+use super::{dump, room};
+use crate::formats::Error;
 
 /// First argument with which a program must call [`serve_reader`]; the second is the file.
 pub const READER_SUBCOMMAND: &str = "__read-cgns";
 
-/// Levels of a tree that are followed; CGNS has seven down to the arrays that are read.
-const DEEPEST: usize = 12;
+/// Seconds that reading may take, beside one for every ten megabytes.
+const SECONDS: u64 = 60;
 
 /// Body of the hidden subcommand: reads the tree and writes it to standard output.
 #[must_use]
 pub fn serve_reader(path: &Path) -> ExitCode {
     cad::child::limit_memory();
     let Some(out) = cad::child::take_stdout() else { return ExitCode::FAILURE };
-    match answer(path, out) {
+    let length = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
+    match dump::write(path, room(length), &mut BufWriter::with_capacity(1 << 20, out)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(_) => ExitCode::FAILURE,
     }
 }
 
-fn answer(path: &Path, out: File) -> io::Result<()> {
-    let mut out = BufWriter::with_capacity(1 << 20, out);
-    match hdf5::File::open(path) {
-        Ok(file) => {
-            out.write_all(labels::TREE)?;
-            children(&mut out, &file, 0)?;
-            out.write_all(labels::TREE)?; // an answer without its end was cut off
+/// What the child says of a file of `length` bytes.
+///
+/// # Errors
+/// [`Error`]: also where the library crashed or hung.
+pub(super) fn ask(program: &Path, path: &Path, length: u64) -> Result<Vec<u8>, Error> {
+    let refused = |reason: String| Error::Format { file: path.to_path_buf(), reason };
+    let limits = Limits { timeout: Duration::from_secs(SECONDS + length / 10_000_000), memory: room(length) };
+    let outcome = run(program, READER_SUBCOMMAND, path, &[], limits).map_err(|error| match error {
+        ChildError::TimedOut { .. } => {
+            refused(format!("reading took longer than {} s and was ended: a malformed file", limits.timeout.as_secs()))
         }
-        Err(error) => {
-            out.write_all(labels::FAILURE)?;
-            out.write_all(error.to_string().as_bytes())?;
+        ChildError::Run(source) => {
+            let what = format!("the reading process {} cannot be run: {source}", program.display());
+            Error::Io { file: path.to_path_buf(), action: "read", source: std::io::Error::other(what) }
         }
+    })?;
+    match (outcome.status.success(), outcome.status.signal()) {
+        (true, _) => Ok(outcome.bytes),
+        // Rust's allocator aborts where it gets no memory.
+        (_, Some(6)) => {
+            Err(refused(format!("reading needs more than {} MB of memory: a malformed file", limits.memory >> 20)))
+        }
+        _ => Err(refused(format!(
+            "the HDF5 library failed while reading it ({}): the file is malformed",
+            outcome.status
+        ))),
     }
-    out.flush()
-}
-
-fn failed(error: hdf5::Error) -> io::Error {
-    io::Error::other(error.to_string())
-}
-
-/// Writes the children of a group that are of use, their number before them; in the order of their names, as HDF5 keeps none
-/// that all writers agree on.
-fn children(out: &mut impl Write, group: &hdf5::Group, depth: usize) -> io::Result<()> {
-    let mut names = group.member_names().map_err(failed)?;
-    names.retain(|name| !name.starts_with(' ') && !labels::PASSED_OVER.contains(&name.as_str()));
-    names.sort_unstable();
-    let mut useful = Vec::new();
-    for name in names.into_iter().filter(|_| depth < DEEPEST) {
-        let Ok(child) = group.group(&name) else { continue };
-        let Some(label) = text(&child, "label").filter(|label| labels::READ.contains(&label.as_str())) else {
-            continue;
-        };
-        useful.push((name, label, child));
-    }
-    out.write_all(&(useful.len() as u64).to_le_bytes())?;
-    for (name, label, child) in useful {
-        // A link's content is that of the node it leads to, which HDF5 finds, in another file too.
-        let child =
-            if text(&child, "type").as_deref() == Some("LK") { child.group(" link").map_err(failed)? } else { child };
-        string(out, &name)?;
-        string(out, &label)?;
-        data(out, &child)?;
-        children(out, &child, depth + 1)?;
-    }
-    Ok(())
-}
-
-/// A text attribute: of 33 bytes as the standard has it, or as others write it.
-fn text(group: &hdf5::Group, name: &str) -> Option<String> {
-    let attribute = group.attr(name).ok()?;
-    let fixed = || Some(attribute.read_scalar::<FixedAscii<64>>().ok()?.as_str().to_owned());
-    let variable = || Some(attribute.read_scalar::<VarLenAscii>().ok()?.as_str().to_owned());
-    let text = fixed().or_else(variable)?;
-    Some(text.trim_end_matches(['\0', ' ']).to_owned())
-}
-
-fn string(out: &mut impl Write, text: &str) -> io::Result<()> {
-    bytes(out, text.as_bytes())
-}
-
-fn bytes(out: &mut impl Write, bytes: &[u8]) -> io::Result<()> {
-    out.write_all(&(bytes.len() as u64).to_le_bytes())?;
-    out.write_all(bytes)
-}
-
-/// Writes the node's array: kind, length in bytes, values. The shape is not needed: all that is read is a list.
-fn data(out: &mut impl Write, group: &hdf5::Group) -> io::Result<()> {
-    let Ok(set) = group.dataset(" data") else {
-        out.write_all(&[kind::NONE])?;
-        return bytes(out, &[]);
-    };
-    let descriptor = set.dtype().and_then(|dtype| dtype.to_descriptor()).map_err(failed)?;
-    match descriptor {
-        TypeDescriptor::Integer(hdf5::types::IntSize::U1) | TypeDescriptor::Unsigned(hdf5::types::IntSize::U1) => {
-            out.write_all(&[kind::TEXT])?;
-            bytes(out, &set.read_raw::<u8>().or_else(|_| Ok(unsigned(set.read_raw::<i8>()?))).map_err(failed)?)
-        }
-        TypeDescriptor::Integer(hdf5::types::IntSize::U4) => {
-            out.write_all(&[kind::INT])?;
-            bytes(out, bytemuck::cast_slice(&set.read_raw::<i32>().map_err(failed)?))
-        }
-        TypeDescriptor::Integer(_) | TypeDescriptor::Unsigned(_) => {
-            out.write_all(&[kind::LONG])?;
-            bytes(out, bytemuck::cast_slice(&set.read_raw::<i64>().map_err(failed)?))
-        }
-        TypeDescriptor::Float(_) => {
-            out.write_all(&[kind::REAL])?;
-            bytes(out, bytemuck::cast_slice(&set.read_raw::<f64>().map_err(failed)?))
-        }
-        _ => {
-            out.write_all(&[kind::NONE])?;
-            bytes(out, &[])
-        }
-    }
-}
-
-fn unsigned(text: Vec<i8>) -> Vec<u8> {
-    text.into_iter().map(i8::cast_unsigned).collect()
 }

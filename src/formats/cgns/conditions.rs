@@ -7,11 +7,11 @@ use rustc_hash::FxHashMap;
 use super::labels;
 use super::read::Zone;
 use super::sections::Section;
+use super::skin;
 use super::tree::{Ints, Tree};
 use crate::element::Cell;
 use crate::formats::assembly::Assembly;
 use crate::formats::error::Flaw;
-use crate::formats::skin;
 use crate::mesh::{Condition, EntityKey, NodeId};
 
 /// A group that a family stands for: its name, and its number where the file gives one.

@@ -10,6 +10,7 @@ use std::path::Path;
 
 use hdf5_metno as hdf5;
 
+use super::dump;
 use super::labels;
 use super::node::{Data, LONGEST_NAME, Node};
 use super::type_code;
@@ -22,8 +23,16 @@ const VERSION: f32 = 3.4;
 
 /// Writes a mesh. Equal meshes make equal bytes.
 pub(super) fn write(path: &Path, mesh: &Mesh) -> Result<(), Unwritten> {
-    let file = hdf5::File::create(path)?;
-    let root = Node::root(&file)?;
+    let file = dump::unlocked().create(path)?;
+    fill(&file, mesh)?;
+    file.close()?;
+    // What the library has written, it must be able to open; only then is it worth a name.
+    dump::open(path)?.group("Base")?;
+    Ok(())
+}
+
+fn fill(file: &hdf5::File, mesh: &Mesh) -> Result<(), Unwritten> {
+    let root = Node::root(file)?;
     root.array("CGNSLibraryVersion", labels::VERSION, &[1], &[VERSION])?;
     let layout = Layout::new(mesh);
     let base = root.array("Base", labels::BASE, &[2], &[layout.top as i32, 3])?;
@@ -31,13 +40,7 @@ pub(super) fn write(path: &Path, mesh: &Mesh) -> Result<(), Unwritten> {
         family.write(&base, mesh)?;
     }
     // Indices are 4 bytes long where they suffice, which is what older libraries take.
-    if layout.largest < i32::MAX as usize {
-        layout.zone::<i32>(&base)?;
-    } else {
-        layout.zone::<i64>(&base)?;
-    }
-    file.close()?;
-    Ok(())
+    if layout.largest < i32::MAX as usize { layout.zone::<i32>(&base) } else { layout.zone::<i64>(&base) }
 }
 
 /// An index of a CGNS file.

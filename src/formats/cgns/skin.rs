@@ -4,8 +4,8 @@ use std::collections::HashSet;
 
 use rustc_hash::FxHashMap;
 
-use super::assembly::Assembly;
 use crate::element::{Cell, face_lattice, lattice};
+use crate::formats::assembly::Assembly;
 use crate::mesh::{Block, EntityKey, FaceKey, NodeId, Parts};
 
 /// A face of the boundary.
@@ -75,11 +75,25 @@ pub(super) fn assign(assembly: &mut Assembly, faces: Vec<(SkinFace, EntityKey)>)
     let moved: HashSet<(usize, usize)> = faces.iter().filter_map(|(face, _)| face.element).collect();
     let tags: Vec<Option<u64>> =
         faces.iter().map(|(face, _)| face.element.map(|(block, n)| assembly.parts.blocks[block].tags[n])).collect();
-    assembly.withdraw(&moved);
+    withdraw(&mut assembly.parts, &moved);
     for ((face, entity), tag) in faces.into_iter().zip(tags) {
         match tag {
             None => assembly.push(face.cell, entity, &face.nodes),
             Some(tag) => assembly.push_tagged(face.cell, entity, tag, &face.nodes),
         }
+    }
+}
+
+/// Takes elements out, given by block and place.
+fn withdraw(parts: &mut Parts, elements: &HashSet<(usize, usize)>) {
+    let order = parts.order;
+    for (place, block) in parts.blocks.iter_mut().enumerate() {
+        if !elements.iter().any(|&(b, _)| b == place) {
+            continue;
+        }
+        let kept: Vec<usize> = (0..block.tags.len()).filter(|&n| !elements.contains(&(place, n))).collect();
+        let stride = block.stride(order);
+        block.nodes = kept.iter().flat_map(|&n| block.nodes[n * stride..][..stride].iter().copied()).collect();
+        block.tags = kept.iter().map(|&n| block.tags[n]).collect();
     }
 }
