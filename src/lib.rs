@@ -32,7 +32,7 @@
 //! use sagitta::formats;
 //!
 //! let mesh = formats::read("fixtures/samples/cylprism_p2_msh41b.msh".as_ref())?;
-//! let certificate = certify::mesh(&mesh, &mesh.points, None, &Settings::default());
+//! let certificate = certify::mesh(&mesh, mesh.points(), None, &Settings::default());
 //! assert!(certificate.holds() && certificate.relative.lower > 0.0);
 //! # Ok::<(), formats::Error>(())
 //! ```
