@@ -6,9 +6,9 @@ use cad::{Aabb, EdgeId, EntityId, Evaluation, FaceId, Group, Kind, Model, Vertex
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
-use super::sizes::{check_boxes, plane_through};
-use super::{AssociateError, Association, Candidate, Candidates, Classification, Curve, Plane, Surface};
-use crate::mesh::{Boundary, EntityKey, Mesh, NodeId};
+use super::sizes::check_boxes;
+use super::{AssociateError, Association, Candidate, Candidates, Classification, Curve, Surface};
+use crate::mesh::{Boundary, EntityKey, Mesh, NodeId, Plane};
 
 /// A point this near to a CAD entity lies on it; fraction of the model's diagonal.
 const ON_ENTITY: f64 = 1e-6;
@@ -194,7 +194,7 @@ impl Binder<'_> {
         let places: Vec<DVec3> = nodes.iter().map(|n| self.mesh.points()[n.index()]).collect();
         let entity = self.boundary.faces[patch[0]].entity;
         let what = format!("{entity}: {} faces are not associated with the CAD", patch.len());
-        let classification = match plane_through(&places, self.slack) {
+        let classification = match Plane::through(&places, self.slack) {
             Some(plane) => {
                 self.result.notes.push(format!("{what}; they stay in their plane"));
                 self.result.planes.push(plane);

@@ -32,6 +32,8 @@ use glam::DVec3;
 
 use cad::Group;
 
+use crate::mesh::Plane;
+
 pub use bind::associate;
 pub use candidates::{Candidate, Candidates};
 pub use choice::{Choice, UnknownPatch};
@@ -67,23 +69,6 @@ pub struct Curve {
     pub group: Group,
     /// What the user calls it.
     pub label: String,
-}
-
-/// A plane by a point and a unit normal.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plane {
-    /// A point of it.
-    pub point: DVec3,
-    /// Its unit normal.
-    pub normal: DVec3,
-}
-
-impl Plane {
-    /// The point of the plane nearest to `x`.
-    #[must_use]
-    pub fn closest(&self, x: DVec3) -> DVec3 {
-        x - self.normal * self.normal.dot(x - self.point)
-    }
 }
 
 /// What holds a boundary node or the inner nodes of a boundary edge or face: the lowest entity wins.

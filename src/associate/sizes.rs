@@ -1,24 +1,12 @@
 //! Do mesh and CAD fit: their boxes, and planes of patches without CAD.
 
 use cad::{Aabb, EntityId, Model};
-use glam::DVec3;
 
-use super::{AssociateError, Candidates, Plane};
+use super::{AssociateError, Candidates};
 use crate::mesh::{Boundary, Mesh};
 
 /// How far mesh and CAD boxes may differ in size before the unit is taken to differ.
 const SAME_SIZE: f64 = 1.5;
-
-/// The plane of points that lie in one, within `slack`.
-pub(super) fn plane_through(points: &[DVec3], slack: f64) -> Option<Plane> {
-    let &origin = points.first()?;
-    let far = |from: DVec3| points.iter().copied().max_by(|a, b| a.distance(from).total_cmp(&b.distance(from)));
-    let across = (far(origin)? - origin).try_normalize()?;
-    let aside = points.iter().map(|&p| (p - origin).cross(across));
-    let normal = aside.max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))?.try_normalize()?;
-    let plane = Plane { point: origin, normal };
-    points.iter().all(|&p| plane.closest(p).distance(p) <= slack).then_some(plane)
-}
 
 /// Refuses a CAD of another size or at another place than what is associated with it.
 pub fn check_boxes(

@@ -18,6 +18,8 @@ const BATCH: usize = 64;
 /// What is proven of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certificate {
+    /// The unit normal that the faces of a plane mesh are judged against.
+    pub normal: Option<DVec3>,
     /// By kind of cell.
     tallies: [Tally; Cell::ALL.len()],
     /// All elements that are not proven valid, in their order.
@@ -92,7 +94,8 @@ impl Certificate {
 /// which `J_c` is taken from ([`MeshElements::new`]).
 #[must_use]
 pub fn mesh(mesh: &Mesh, positions: &[DVec3], linear_corners: Option<&[DVec3]>, settings: &Settings) -> Certificate {
-    certify(&MeshElements::new(mesh, positions, linear_corners), settings)
+    let elements = MeshElements::new(mesh, positions, linear_corners);
+    Certificate { normal: elements.normal(), ..certify(&elements, settings) }
 }
 
 /// Certifies all elements of a source. The certificate does not depend on the number of threads.
@@ -131,9 +134,10 @@ impl Bench {
     ) -> R {
         self.buffer.points.clear();
         self.buffer.corners.clear();
+        self.buffer.normal = None;
         let (cell, order) = elements.read(element, &mut self.buffer);
         let corners = (!self.buffer.corners.is_empty()).then_some(self.buffer.corners.as_slice());
-        work(&mut self.judge, &Shape { cell, order, points: &self.buffer.points, corners })
+        work(&mut self.judge, &Shape { cell, order, points: &self.buffer.points, corners, normal: self.buffer.normal })
     }
 
     fn summary(&mut self, elements: &impl Elements, range: std::ops::Range<usize>, settings: &Settings) -> Summary {
@@ -233,6 +237,7 @@ impl Summary {
         let (scaled, mut worst_scaled) = self.scaled.end();
         worst_relative.iter_mut().chain(&mut worst_scaled).for_each(place);
         Certificate {
+            normal: None,
             tallies: self.tallies,
             failures: self.failures,
             minima: self.minima,

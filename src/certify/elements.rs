@@ -12,6 +12,8 @@ pub struct Buffer {
     pub points: Vec<DVec3>,
     /// Corners of the unperturbed linear element; empty where there is none.
     pub corners: Vec<DVec3>,
+    /// The unit normal that a face is judged against; volumes have none.
+    pub normal: Option<DVec3>,
 }
 
 /// Elements that are to be judged, of any kinds and orders.
@@ -35,14 +37,25 @@ pub struct MeshElements<'a> {
     cells: mesh::Elements<'a>,
     positions: &'a [DVec3],
     unperturbed: Option<&'a [DVec3]>,
+    /// That of a plane mesh.
+    normal: Option<DVec3>,
 }
 
 impl<'a> MeshElements<'a> {
     /// The cells of a mesh with its nodes at `positions`, and the points of its linear nodes before they were moved (the first
     /// of an elevated mesh's); without these an element's reference is its own straight corners.
+    ///
+    /// Faces are judged against the normal of the mesh's plane ([`Mesh::plane`]); those of a mesh that has none are undecided.
     #[must_use]
     pub fn new(mesh: &'a Mesh, positions: &'a [DVec3], unperturbed: Option<&'a [DVec3]>) -> MeshElements<'a> {
-        MeshElements { cells: mesh.cells(), positions, unperturbed }
+        let normal = mesh.plane(positions).map(|plane| plane.normal);
+        MeshElements { cells: mesh.cells(), positions, unperturbed, normal }
+    }
+
+    /// The unit normal of a plane mesh.
+    #[must_use]
+    pub fn normal(&self) -> Option<DVec3> {
+        self.normal
     }
 }
 
@@ -65,6 +78,7 @@ impl Elements for MeshElements<'_> {
         if let Some(points) = self.unperturbed {
             into.corners.extend(element.corners().iter().map(|n| points[n.index()]));
         }
+        into.normal = self.normal;
         (element.cell, self.cells.order())
     }
 }

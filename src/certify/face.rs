@@ -15,9 +15,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::form::Form;
-use super::judge::{Arithmetic, Frame, Judge, absolute, largest, load};
+use super::judge::{Arithmetic, Frame, Judge, Shape, frame};
 use super::pieces::{Accuracy, Reference};
-use super::product::Product;
 use super::real::Double;
 use super::search::{Goal, Task};
 use super::{Settings, Verdict};
@@ -103,19 +102,18 @@ impl Judge {
     ///
     /// `other` is asked for a second vector where the mean normal of the linear face does not prove it.
     pub fn fold(&mut self, face: &WallFace, other: impl FnOnce() -> Option<DVec3>, settings: &Settings) -> Verdict {
-        let counted = face.cell.dimension() == 2
-            && face.points.len() == face.cell.node_count(face.order)
-            && face.corners.len() == face.cell.corner_count();
-        let finite = face.points.iter().chain(&face.corners).all(|x| x.is_finite());
-        if !counted || !finite {
+        let normal = mean_normal(&face.corners);
+        if face.corners.len() != face.cell.corner_count() || normal == DVec3::ZERO || !normal.is_finite() {
             return Verdict::Undecided;
         }
-        let normal = mean_normal(&face.corners);
-        let reach = face.points.iter().fold(DVec3::ZERO, |reach, &x| reach.max((x - face.points[0]).abs()));
-        let Some(frame) = Frame::of(reach).filter(|_| normal != DVec3::ZERO) else { return Verdict::Undecided };
-        let mut against = |vector: DVec3| match self.fold_in::<f64>(face, vector, frame, settings) {
-            Verdict::Undecided => self.fold_in::<Double>(face, vector, frame, settings),
-            decided => decided,
+        let mut against = |vector: DVec3| {
+            let WallFace { cell, order, ref points, ref corners } = *face;
+            let shape = Shape { cell, order, points, corners: Some(corners), normal: Some(vector) };
+            let Some(frame) = frame(&shape) else { return Verdict::Undecided };
+            match self.fold_in::<f64>(&shape, frame, settings) {
+                Verdict::Undecided => self.fold_in::<Double>(&shape, frame, settings),
+                decided => decided,
+            }
         };
         let first = against(normal);
         let other = || other().filter(|other| other.dot(normal) > 0.0).and_then(DVec3::try_normalize);
@@ -123,17 +121,8 @@ impl Judge {
         if stands { Verdict::Valid } else { first }
     }
 
-    fn fold_in<T: Arithmetic>(&mut self, face: &WallFace, normal: DVec3, frame: Frame, settings: &Settings) -> Verdict {
-        let (product, form) = (Product::of(face.cell, face.order), Form::of(face.cell, face.order));
-        let (work, root) = T::parts(self);
-        load(&mut work.nodes, &face.points, frame.scale);
-        // The vector is one more node, neither shifted nor scaled: of size 1 as the face is now.
-        work.nodes.push(normal.to_array().map(T::of));
-        let nodes = largest(&work.nodes);
-        let columns = product.coefficients(work, root);
-        let size = absolute(root);
-        let error = product.growth.bound::<T>(nodes, columns, size, [0.0; 3]);
-        let own = Accuracy { error, largest: size + error };
+    fn fold_in<T: Arithmetic>(&mut self, shape: &Shape, frame: Frame, settings: &Settings) -> Verdict {
+        let (own, form) = (self.coefficients::<T>(shape, frame), Form::of(shape.cell, shape.order));
         let reference = Reference::Constant(own.largest);
         let task = Task { form, reference, accuracy: [own, Accuracy::default()], goal: Goal::Verdict };
         // Only the sign matters: any bound is near enough.

@@ -14,7 +14,7 @@ use crate::element::{Cell, Order};
 /// An element to be judged.
 #[derive(Clone, Copy, Debug)]
 pub struct Shape<'a> {
-    /// Its cell, of three dimensions.
+    /// Its cell: a volume, or a face of a plane mesh.
     pub cell: Cell,
     /// Its order.
     pub order: Order,
@@ -22,6 +22,21 @@ pub struct Shape<'a> {
     pub points: &'a [DVec3],
     /// The corners of the linear element that `J_c` is taken from; its own straight corners where there is none.
     pub corners: Option<&'a [DVec3]>,
+    /// The unit normal that a face is judged against: its `J` is `(x_u x x_v) . m`. Volumes have none.
+    pub normal: Option<DVec3>,
+}
+
+impl Shape<'_> {
+    /// Loads coordinates of the element, shifted and scaled, and after them the normal.
+    fn load<T: Real>(&self, into: &mut Vec<[T; 3]>, points: &[DVec3], frame: Frame) {
+        load(into, points, frame.scale);
+        into.extend(self.last_node());
+    }
+
+    /// A face's normal, which stands after its nodes as it is.
+    fn last_node<T: Real>(&self) -> Option<[T; 3]> {
+        self.normal.map(|normal| normal.to_array().map(T::of))
+    }
 }
 
 /// Judges elements one after another, in memory that it keeps.
@@ -34,7 +49,7 @@ pub struct Judge {
     pub(super) search: Search,
 }
 
-/// A power of two and the shift that bring an element to size 1, and its largest components then.
+/// A power of two that brings an element to size 1, and its largest components then, the normal's included.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frame {
     pub(super) scale: f64,
@@ -81,6 +96,7 @@ impl Judge {
         load(&mut self.simple.nodes, shape.points, frame.scale);
         let off = straight::distance(shape.cell, shape.order, &self.simple.nodes, frame.largest)?;
         self.simple.nodes.truncate(shape.cell.corner_count());
+        self.simple.nodes.extend(shape.last_node());
         let product = Product::of(shape.cell, Order::LINEAR);
         let columns = product.coefficients(&mut self.simple, &mut self.root);
         let largest = absolute(&self.root);
@@ -105,7 +121,7 @@ impl Judge {
         let product = Product::of(shape.cell, shape.order);
         let form = Form::of(shape.cell, shape.order);
         let (work, root) = T::parts(self);
-        load(&mut work.nodes, shape.points, frame.scale);
+        shape.load(&mut work.nodes, shape.points, frame);
         let columns = product.coefficients(work, root);
         let largest = absolute(root);
         let error = product.growth.bound::<T>(frame.largest, columns, largest, [0.0; 3]);
@@ -132,7 +148,7 @@ impl Judge {
             goal: Goal::Verdict,
         };
         let outcome = self.search.run(&task, &self.root, settings);
-        (finding(&outcome, known, frame, T::METHOD), Stop::of(&outcome))
+        (finding(&outcome, known, shape.cell, frame, T::METHOD), Stop::of(&outcome))
     }
 
     /// `J_c`: appended to the root as a net, or a constant; `None` where it is not positive at a corner.
@@ -142,7 +158,7 @@ impl Judge {
         let corners = &shape.corners.unwrap_or(shape.points)[..count];
         let mut linear = std::mem::take(&mut self.linear);
         let (work, _) = T::parts(self);
-        load(&mut work.nodes, corners, frame.scale);
+        shape.load(&mut work.nodes, corners, frame);
         let nodes = largest(&work.nodes);
         let columns = product.coefficients(work, &mut linear);
         let size = absolute(&linear);
@@ -198,16 +214,18 @@ impl Arithmetic for Double {
     }
 }
 
-/// The frame of an element; `None` where it has no size, is not finite, or lacks nodes.
+/// The frame of an element; `None` where it has no size, is not finite, lacks nodes, or is a face without a normal.
 pub(super) fn frame(shape: &Shape) -> Option<Frame> {
     let points = shape.points;
     let counted = points.len() == shape.cell.node_count(shape.order)
         && shape.corners.is_none_or(|corners| corners.len() >= shape.cell.corner_count())
-        && shape.cell.dimension() == 3;
+        && shape.cell.has_jacobian(shape.normal.is_some());
     let &first = points.first().filter(|_| counted)?;
     let largest = points.iter().fold(DVec3::ZERO, |largest, &x| largest.max((x - first).abs()));
-    let finite = points.iter().all(|x| x.is_finite());
-    if finite { Frame::of(largest) } else { None }
+    let finite = points.iter().chain(&shape.normal).all(|x| x.is_finite());
+    let frame = Frame::of(largest).filter(|_| finite)?;
+    let normal = shape.normal.unwrap_or(DVec3::ZERO).abs();
+    Some(Frame { largest: DVec3::from(frame.largest).max(normal).to_array(), ..frame })
 }
 
 impl Frame {
@@ -253,10 +271,10 @@ fn undecided() -> Finding {
     }
 }
 
-fn finding(outcome: &Outcome, known: bool, frame: Frame, method: Method) -> Finding {
+fn finding(outcome: &Outcome, known: bool, cell: Cell, frame: Frame, method: Method) -> Finding {
     let [(least, at), (most, _)] = outcome.attained;
     let [low, high] = outcome.determinant;
-    let volume = frame.scale.powi(-3);
+    let volume = frame.scale.powi(-(cell.dimension() as i32));
     let verdict = match outcome.verdict {
         Verdict::Invalid { at, value } => Verdict::Invalid { at, value: value * volume },
         other => other,

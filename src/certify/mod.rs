@@ -8,6 +8,7 @@
 //! `s = 1 - c`: at the apex it depends on the direction, and all directions count.
 
 mod certificate;
+mod check;
 mod contest;
 mod elements;
 mod face;
@@ -34,6 +35,7 @@ mod tests;
 mod verdict;
 
 pub use certificate::{Certificate, Judged, Tally, certify, mesh};
+pub use check::{NotCertifiable, check};
 pub use elements::{Buffer, Elements, MeshElements};
 pub use face::{FaceFinding, WallFace, Walls, walls};
 pub use judge::{Judge, Shape};

@@ -104,7 +104,7 @@ fn sample(dense: &Dense, random: &mut Random) -> Sample {
     let (sampled, sharp) = (random.unit() < 0.3, Settings { gap: 1e-4, ..Settings::default() });
     let mut judge = Judge::default();
     let mut least = |points: &[DVec3]| {
-        let shape = Shape { cell, order, points, corners: Some(&corners) };
+        let shape = Shape { cell, order, points, corners: Some(&corners), normal: None };
         if sampled { dense.least(points, &corners)[1] } else { judge.examine(&shape, &sharp).relative.upper }
     };
     let (mut low, mut high) = (0.0, 0.5);
@@ -159,7 +159,7 @@ fn survey(seed: u64, elements: usize, points: usize) {
             let mut seconds = 0.0;
             for n in 0..elements {
                 let sample = sample(&bisected, &mut random);
-                let shape = Shape { cell, order, points: &sample.points, corners: Some(&sample.corners) };
+                let shape = Shape { cell, order, points: &sample.points, corners: Some(&sample.corners), normal: None };
                 let start = std::time::Instant::now();
                 let finding = judge.examine(&shape, &settings);
                 seconds += start.elapsed().as_secs_f64();

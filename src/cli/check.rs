@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::{form, input};
-use crate::certify::{self, Settings};
+use crate::certify::{self, NotCertifiable, Settings};
 use crate::cli::exit::{DONE, NOT_CERTIFIED};
 use crate::cli::output::{Failure, print, write_json};
 use crate::mesh::{self, linear_positions};
@@ -33,6 +33,14 @@ struct NotItsLinear {
     why: mesh::NotItsLinear,
 }
 
+/// A mesh of which nothing can be proven.
+#[derive(Debug, thiserror::Error)]
+#[error("{mesh}: {cause}")]
+struct Refused {
+    mesh: String,
+    cause: NotCertifiable,
+}
+
 /// Certifies a mesh and prints what is proven.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let mesh = input::mesh(&options.mesh)?;
@@ -48,7 +56,8 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
             Some(matched)
         }
     };
-    let certificate = certify::mesh(&mesh, mesh.points(), unperturbed.as_deref(), &Settings::default());
+    let certificate = certify::check(&mesh, mesh.points(), unperturbed.as_deref(), &Settings::default())
+        .map_err(|cause| Refused { mesh: options.mesh.display().to_string(), cause })?;
     let report = CheckReport::new(&options.mesh, &mesh, &certificate);
     if let Some(path) = &options.report {
         write_json(path, &report)?;

@@ -9,6 +9,7 @@ use clap::Args;
 
 use crate::cli::exit::DONE;
 use crate::cli::output::{Failure, print};
+use crate::element::Cell;
 use crate::formats;
 use crate::mesh::Mesh;
 
@@ -70,11 +71,13 @@ fn mesh(mesh: &Mesh) -> Result<String, Failure> {
     let counts: Vec<String> = counts.iter().map(|(cell, count)| format!("{count} {cell}")).collect();
     writeln!(text, "  elements: {}", counts.join(", "))?;
     let mut patches: BTreeMap<_, usize> = BTreeMap::new();
-    for block in mesh.side_blocks() {
-        *patches.entry(block.entity).or_default() += block.tags.len();
+    let inside = mesh.cell_blocks().filter(|_| !mesh.is_volume());
+    for block in mesh.side_blocks().chain(inside) {
+        let noun = if block.cell == Cell::Line { "edges" } else { "faces" };
+        *patches.entry((block.entity, noun)).or_default() += block.tags.len();
     }
-    for (entity, faces) in patches {
-        writeln!(text, "  {entity}: {faces} faces {}", mesh.names_of(entity).join(","))?;
+    for ((entity, noun), count) in patches {
+        writeln!(text, "  {entity}: {count} {noun} {}", mesh.names_of(entity).join(","))?;
     }
     for note in mesh.notes() {
         writeln!(text, "  note: {note}")?;

@@ -5,9 +5,9 @@ use glam::DVec3;
 use super::periodic::PeriodicConstraint;
 use super::settings::Settings;
 use super::wall_state::Wall;
-use crate::associate::{Association, Classification, Plane};
+use crate::associate::{Association, Classification};
 use crate::mesh::elevate::Elevated;
-use crate::mesh::{Boundary, Mesh, NodeId};
+use crate::mesh::{Boundary, Mesh, NodeId, Plane};
 
 /// What is the same at every order.
 #[derive(Clone, Copy, Debug)]

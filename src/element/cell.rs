@@ -247,6 +247,12 @@ impl Cell {
         self.definition().dimension
     }
 
+    /// Whether its map has a Jacobian determinant: a volume's has, a face's with a normal.
+    #[must_use]
+    pub fn has_jacobian(self, with_normal: bool) -> bool {
+        self.dimension() == if with_normal { 2 } else { 3 }
+    }
+
     /// Corners of the unit cell, each coordinate 0 or 1.
     #[must_use]
     pub fn corners(self) -> &'static [[u8; 3]] {

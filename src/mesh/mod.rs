@@ -12,6 +12,7 @@ mod incidence;
 mod linear_positions;
 mod parts;
 pub mod periodic;
+mod plane;
 mod zone;
 
 use std::collections::BTreeMap;
@@ -28,6 +29,7 @@ pub use ids::{ElementId, NodeId, TooMany};
 pub use incidence::Incidence;
 pub use linear_positions::{NotItsLinear, linear_positions};
 pub use parts::{Inconsistent, Parts};
+pub use plane::Plane;
 pub use zone::Zone;
 
 use crate::element::{Cell, Order};

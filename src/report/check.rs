@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
+use glam::DVec3;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::certificate::CertificateReport;
 use crate::certify::{Certificate, Tally};
 use crate::element::Cell;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Plane};
 
 /// Name and version of the JSON document.
 pub const SCHEMA: &str = "sagitta-check-2";
@@ -31,6 +32,8 @@ pub struct CheckReport {
     pub cells: Vec<CellCounts>,
     /// Minima and the elements that have them.
     pub certificate: CertificateReport,
+    /// What a user should know.
+    pub notes: Vec<String>,
 }
 
 /// Verdicts on the elements of one kind.
@@ -63,6 +66,20 @@ impl CheckReport {
             certified: certificate.holds(),
             cells: certificate.tallies().map(counts).collect(),
             certificate: CertificateReport::new(mesh, certificate),
+            notes: certificate.normal.into_iter().filter_map(orientation).collect(),
         }
     }
+}
+
+/// The orientation of a plane mesh, where it is not the usual one.
+fn orientation(normal: DVec3) -> Option<String> {
+    let plane = Plane { point: DVec3::ZERO, normal };
+    let largest = normal.abs().max_position();
+    (!plane.is_along_axis()).then(|| {
+        let [x, y, z] = normal.to_array();
+        format!(
+            "most cells are numbered clockwise as seen from +{}; all are judged against the normal ({x:.6}, {y:.6}, {z:.6})",
+            ["x", "y", "z"][largest]
+        )
+    })
 }

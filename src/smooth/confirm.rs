@@ -44,7 +44,8 @@ impl Bench {
         self.points.extend(nodes.iter().map(|n| x[n.index()]));
         self.corners.clear();
         self.corners.extend(nodes[..cell.corner_count()].iter().map(|n| problem.straight[n.index()]));
-        let shape = Shape { cell, order: problem.order, points: &self.points, corners: Some(&self.corners) };
+        let (points, corners) = (&self.points[..], Some(&self.corners[..]));
+        let shape = Shape { cell, order: problem.order, points, corners, normal: None };
         // Only the sign matters: any bound is near enough.
         let settings = certify::Settings { gap: f64::INFINITY, ..certify::Settings::default() };
         let finding = self.judge.examine(&shape, &settings);

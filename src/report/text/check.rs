@@ -14,6 +14,9 @@ impl Display for CheckReport {
         }
         let scaled = self.certificate.scaled_jacobian;
         writeln!(f, "  smallest scaled Jacobian between {} and {}", number(scaled.lower), number(scaled.upper))?;
+        for note in &self.notes {
+            writeln!(f, "  note: {note}")?;
+        }
         certificate(&self.certificate, self.certified, f)
     }
 }
