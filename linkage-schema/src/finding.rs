@@ -84,7 +84,7 @@ codes! {
     StrayText = "ML106", Warning, "remove the text or make it a comment";
     /// An element follows one that it must precede; it is read nevertheless.
     OutOfOrder = "ML107", Warning, "put all ParamVertex elements before the faces or edges";
-    /// A container without what it must contain.
+    /// A container without its required content.
     EmptyElement = "ML108", Warning, "remove the element or give it its contents";
     /// A document type declaration; it is ignored, and entities that it defines are refused.
     Doctype = "ML109", Warning, "remove the DOCTYPE";
@@ -96,19 +96,19 @@ codes! {
     UnknownFormat = "ML202", Error, "write format=\"text\" or format=\"base64\"";
     /// A word that is neither the index of a point nor an id.
     BadIndex = "ML203", Error, "write whole numbers that count from 1";
-    /// The count promises more than the content holds.
+    /// The content is shorter than the count says.
     CountTooLarge = "ML204", Error, "correct the count or complete the content";
-    /// The content holds more than the count promises; the rest is ignored.
+    /// The content is longer than the count says; the rest is ignored.
     ExtraContent = "ML205", Warning, "correct the count or shorten the content";
     /// Content that is not base64, or not of whole 32-bit integers.
     BadBase64 = "ML206", Error, "write little-endian 32-bit integers in base64 with the standard alphabet";
     /// A parameter that is not a finite number, or too few of them; the vertex is dropped.
     BadNumber = "ML207", Error, "write as many finite decimal numbers as dim says";
-    /// Parameters that are neither one nor two; the vertex is dropped.
+    /// A vertex with neither one nor two parameters; it is dropped.
     BadDimension = "ML208", Error, "write dim=\"1\" on a curve, dim=\"2\" on a surface";
-    /// Base64 where other readers know only text.
+    /// Base64 where other readers understand text only.
     UnusualBase64 = "ML209", Warning, "write format=\"text\" for edges and points";
-    /// An id that is given twice; the first holds.
+    /// An id that is defined twice; the first counts.
     DuplicateId = "ML301", Error, "give every element an id of its own";
     /// A reference to an id that nothing defines.
     DanglingReference = "ML302", Error, "define the id or correct the reference";
@@ -122,7 +122,7 @@ codes! {
     RepeatedMember = "ML306", Warning, "list it once";
     /// A face or edge that has a corner twice.
     DegenerateCell = "ML307", Warning, "remove it, or write a collapsed quad as Tri3";
-    /// A point with two parameter vertices in one container; the first holds.
+    /// A point with two parameter vertices in one container; the first counts.
     RepeatedVertex = "ML308", Warning, "keep the one on the entity of its container";
     /// A parameter vertex of a point that no face or edge of its container has.
     StrayVertex = "ML309", Warning, "move it to the sheet or string that has the point";
@@ -142,7 +142,7 @@ codes! {
     NotInMesh = "ML404", Error, "correct the indices, or remove the face";
     /// A linked face that is not on the mesh's boundary: it lies inside the volume.
     InteriorFace = "ML405", Warning, "remove it, unless something is meant to lie inside the volume";
-    /// A face that is linked a second time.
+    /// A face that is linked twice.
     RepeatedFace = "ML406", Error, "link every face once";
     /// The edges of a string do not form one path or loop.
     BrokenString = "ML407", Error, "close the gap, remove the branch, or split the string in two";
@@ -182,7 +182,7 @@ codes! {
     UnreadableGeometry = "ML509", Note, "give the same geometry in one file of STEP, IGES or BREP, with references that it has";
     /// The CAD file that was given is not the one that the linkage names.
     OtherCadFile = "ML510", Warning, "make sure that the references mean the same entities in this file";
-    /// CAD and mesh differ in size by a factor between units, or lie apart.
+    /// CAD and mesh differ in size by a ratio of units, or lie apart.
     OtherScale = "ML511", Error, "bring both to the same unit and position";
 }
 

@@ -127,13 +127,13 @@ impl<R: BufRead> Cursor<R> {
         let wanted = count.saturating_mul(width as u64);
         if wanted > found as u64 {
             self.findings.push(Code::CountTooLarge, shape.origin, || {
-                format!("{element} promises {count} x {width} indices and holds {found}")
+                format!("{element} announces {count} x {width} indices and has {found}")
             });
             return None;
         }
         if wanted < found as u64 {
             self.findings.push(Code::ExtraContent, shape.origin, || {
-                format!("{element} promises {count} x {width} indices and holds {found}")
+                format!("{element} announces {count} x {width} indices and has {found}")
             });
         }
         usize::try_from(count).ok()
