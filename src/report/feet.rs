@@ -112,7 +112,7 @@ impl FeetReport {
             unproven_by_reason: BTreeMap::new(),
             feet_by_end: BTreeMap::new(),
             feet_by_entity: BTreeMap::new(),
-            mean_distance: found().map(|foot| foot.distance).sum::<f64>() / found().count().max(1) as f64,
+            mean_distance: found().fold(0.0, |sum, foot| sum + foot.distance) / found().count().max(1) as f64,
             farthest: None,
             notes: Vec::new(),
             seconds,

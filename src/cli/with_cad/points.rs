@@ -1,6 +1,6 @@
 //! Lists of points and their feet on the CAD, as comma-separated values.
 
-use std::io::{Read, Write};
+use std::io::{Chain, Read, Write};
 
 use cad::Foot;
 use csv::{ByteRecord, Reader, ReaderBuilder, StringRecord, Terminator};
@@ -43,7 +43,8 @@ pub(super) fn read(input: impl Read) -> Result<Vec<DVec3>, Flaw> {
 
 /// Lines that are not empty, with their numbers.
 struct Lines<R> {
-    reader: Reader<R>,
+    /// Behind the input stands a line's end, so that the last line has one in any case.
+    reader: Reader<Chain<R, &'static [u8]>>,
     record: ByteRecord,
 }
 
@@ -52,7 +53,7 @@ impl<R: Read> Lines<R> {
         let mut builder = ReaderBuilder::new();
         // '\r' is space at the end of a line, so that lines are counted by '\n' alone
         builder.has_headers(false).flexible(true).terminator(Terminator::Any(b'\n'));
-        Lines { reader: builder.from_reader(input), record: ByteRecord::new() }
+        Lines { reader: builder.from_reader(input.chain(&b"\n"[..])), record: ByteRecord::new() }
     }
 
     /// The values of the next line, without spaces around them.
@@ -72,10 +73,9 @@ impl<R: Read> Lines<R> {
         }
     }
 
-    /// The line that was read last; at the end of the file, the one that is missing.
+    /// What is wrong with the line that was read last, or at the end of the file.
     fn flaw(&self, what: String) -> Flaw {
-        let behind = u64::from(!self.reader.is_done());
-        Flaw { line: self.reader.position().line() - behind, what }
+        Flaw { line: self.reader.position().line() - 1, what }
     }
 }
 
