@@ -8,7 +8,7 @@ use cad::Aabb;
 use clap::Args;
 
 use crate::cli::exit::DONE;
-use crate::cli::output::{Failure, print};
+use crate::cli::output::{Failure, bounds, print};
 use crate::element::Cell;
 use crate::formats;
 use crate::mesh::Mesh;
@@ -56,12 +56,6 @@ fn kind(path: &Path) -> Result<Kind, Failure> {
         [b'<', ..] | [0xef, 0xbb, 0xbf, b'<', ..] => Kind::Linkage,
         _ => Kind::Cad,
     })
-}
-
-/// A box in words.
-pub(super) fn bounds(bounds: Aabb) -> String {
-    let [a, b] = [bounds.min, bounds.max];
-    format!("box ({}, {}, {}) to ({}, {}, {})", a.x, a.y, a.z, b.x, b.y, b.z)
 }
 
 fn mesh(mesh: &Mesh) -> Result<String, Failure> {

@@ -5,6 +5,8 @@ use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 
+use cad::Aabb;
+
 use crate::formats;
 
 /// Whatever stops a command; its message is complete.
@@ -34,4 +36,10 @@ pub(super) fn write_json(path: &Path, document: &impl serde::Serialize) -> Resul
     let text = serde_json::to_vec_pretty(document)?;
     formats::write_bytes(path, &text)?;
     Ok(())
+}
+
+/// A box in words.
+pub(super) fn bounds(bounds: Aabb) -> String {
+    let [a, b] = [bounds.min, bounds.max];
+    format!("box ({}, {}, {}) to ({}, {}, {})", a.x, a.y, a.z, b.x, b.y, b.z)
 }

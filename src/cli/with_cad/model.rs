@@ -7,8 +7,7 @@ use std::path::Path;
 use cad::{Health, Kind, Model};
 
 use super::reading::in_a_child;
-use crate::cli::info::bounds;
-use crate::cli::output::Failure;
+use crate::cli::output::{Failure, bounds};
 
 /// What a CAD file holds, in words.
 pub(in crate::cli) fn describe(path: &Path, timeout: f64) -> Result<String, Failure> {
