@@ -56,8 +56,11 @@ enum Command {
     Info(info::Options),
 }
 
+/// Reads a file in a child process.
+type Reader = fn(&Path) -> ExitCode;
+
 /// Hidden subcommands, each with a file: what reads it in a child process, as malformed files crash the libraries that do.
-const READERS: &[(&str, fn(&Path) -> ExitCode)] = &[
+const READERS: &[(&str, Reader)] = &[
     #[cfg(feature = "cad")]
     (cad::READER_SUBCOMMAND, cad::serve_reader),
     #[cfg(feature = "cgns")]

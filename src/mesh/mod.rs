@@ -119,6 +119,7 @@ impl Mesh {
     }
 
     /// Pairs of entities, to be added to or taken out; their nodes must be nodes of the mesh.
+    #[cfg(feature = "cad")] // only curving finds pairs that no file names
     pub(crate) fn periodic_mut(&mut self) -> &mut Vec<Periodic> {
         &mut self.parts.periodic
     }
