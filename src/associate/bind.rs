@@ -29,7 +29,6 @@ pub fn associate(
     if faces_linked == 0 {
         return Err(AssociateError::Nothing { surfaces: candidates.sheets.len(), faces: model.faces().len() });
     }
-    check_boxes(mesh, boundary, model, candidates)?;
     let limit = max_offset * Aabb::of_points(mesh.points().iter().copied()).diagonal();
     let slack = ON_ENTITY * model.diagonal();
     let mut binder = Binder {
@@ -43,7 +42,8 @@ pub fn associate(
         known_curves: FxHashMap::default(),
         singles: FxHashMap::default(),
     };
-    binder.faces(candidates)?;
+    // Boxes of another size or place explain a failure; they make none: a mesh may cover a part of its CAD faces.
+    binder.faces(candidates).map_err(|error| check_boxes(mesh, boundary, model, candidates).err().unwrap_or(error))?;
     binder.edges(candidates)?;
     binder.nodes(candidates);
     Ok(binder.result)
@@ -282,13 +282,13 @@ impl Binder<'_> {
             return Ok(first);
         }
         let surfaces: Vec<usize> = classifications.iter().filter_map(|h| surface_of(*h)).collect();
-        if surfaces.is_empty() {
-            return Ok(Classification::Straight);
-        }
+        let Some(&surface) = surfaces.first() else { return Ok(Classification::Straight) };
         let found = self.candidates(edge).unwrap_or_default();
         let ids: Vec<EdgeId> = found.into_iter().collect();
         match Group::of_edges(self.model, &ids) {
             Ok(group) => Ok(Classification::Curve(self.curve(ids, "edge between surfaces", group))),
+            // What lies beside the surface is not associated with the CAD: the rim of what is goes with it.
+            Err(_) if surfaces.iter().all(|&other| other == surface) => Ok(Classification::Surface(surface)),
             Err(_) => {
                 let [a, b] = self.boundary.edges[edge].map(|n| self.mesh.node_tags()[n.index()]);
                 let label = |h: Option<&Classification>| match h {

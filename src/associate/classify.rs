@@ -1,14 +1,13 @@
 //! Where the association of a mesh comes from: a linkage file, its entity tags, or its geometry.
 
 use cad::Model;
+use rustc_hash::FxHashSet;
 
 use super::{
-    AssociateError, Association, Candidates, Inference, Linkage, LinkageError, Tolerance, associate, infer, linked,
+    AssociateError, Association, Candidate, Candidates, Inference, Linkage, LinkageError, Tolerance, associate, infer,
+    linked,
 };
 use crate::mesh::{Boundary, Mesh};
-
-/// An inference is used where at least this fraction of the faces of every patch that it covers is decided.
-const DECIDED: f64 = 0.9;
 
 /// Candidates, checked against the CAD, and where they come from.
 #[derive(Debug)]
@@ -67,34 +66,40 @@ pub fn classify(
         }
         return Ok(classified);
     }
-    let by_tags = held(Candidates::by_tags(mesh, boundary, model), None, "the mesh's entity tags".into());
-    let refused = match by_tags {
-        Err(error) if error.tags_are_of_no_use() => error,
-        other => return Ok(other?),
+    let tags = Candidates::by_tags(mesh, boundary, model);
+    let mut asked = tags.clone();
+    choose(&mut asked);
+    let by_tags = match held(tags.clone(), None, "the mesh's entity tags".into()) {
+        Ok(classified) if asked.sheets.iter().all(|sheet| !sheet.entities.is_empty()) => return Ok(classified),
+        Err(error) if !error.tags_are_of_no_use() => return Err(error.into()),
+        other => other,
     };
+    // Faces of which the tags say nothing that holds are left to geometry.
     let inference = infer(mesh, boundary, model, &Tolerance::of(mesh));
-    if !is_usable(boundary, &inference) {
-        return Err(refused.into());
+    let holds = |sheet: &&Candidate<usize>| {
+        let alone = Candidates { sheets: vec![(*sheet).clone()], ..Candidates::default() };
+        associate(mesh, boundary, model, &alone, max_offset).is_ok()
+    };
+    let held_by_tags: Vec<&Candidate<usize>> = tags.sheets.iter().filter(holds).collect();
+    let said: FxHashSet<usize> = held_by_tags.iter().flat_map(|sheet| sheet.items.iter().copied()).collect();
+    let found: FxHashSet<usize> =
+        inference.candidates.sheets.iter().flat_map(|sheet| sheet.items.iter().copied()).collect();
+    if found.is_subset(&said) {
+        return Ok(by_tags?);
     }
-    let mut classified = held(inference.candidates.clone(), None, "geometry".into())?;
+    let mut candidates = inference.candidates.clone();
+    for sheet in held_by_tags {
+        let items: Vec<usize> = sheet.items.iter().copied().filter(|face| !found.contains(face)).collect();
+        if !items.is_empty() {
+            candidates.sheets.push(Candidate { items, ..sheet.clone() });
+        }
+    }
+    let source = if said.is_empty() { "geometry" } else { "geometry and the mesh's entity tags" };
+    let mut classified = held(candidates, None, source.into())?;
     let [faces, edges] = [inference.undecided(), inference.edges.len()];
     classified.association.notes.push(format!(
         "the mesh's entity tags do not match the CAD's numbers; mesh and CAD were associated by geometry, with {faces} faces and {edges} edges undecided (--dry-run shows the association)"
     ));
     classified.inference = Some(inference);
     Ok(classified)
-}
-
-/// Whether something was decided, and of every patch nearly all or nothing.
-fn is_usable(boundary: &Boundary, inference: &Inference) -> bool {
-    let mut counts: std::collections::BTreeMap<_, [usize; 2]> = std::collections::BTreeMap::new();
-    for face in &boundary.faces {
-        counts.entry(face.entity).or_default()[0] += 1;
-    }
-    for (face, _) in &inference.faces {
-        counts.entry(boundary.faces[*face].entity).or_default()[1] += 1;
-    }
-    let tied = |[all, open]: &[usize; 2]| *all - *open;
-    counts.values().any(|count| tied(count) > 0)
-        && counts.values().all(|count| tied(count) == 0 || tied(count) as f64 >= DECIDED * count[0] as f64)
 }

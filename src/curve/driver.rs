@@ -43,6 +43,9 @@ pub struct Curved {
     pub walls: Walls,
     /// Boundary faces that are off the CAD, so that the elements behind them are valid.
     pub off_cad: Vec<OffCadFace>,
+    /// Boundary faces, by index, that no CAD was found for and that stay straight, though they seem to belong to a curved wall and were not
+    /// asked to stay straight.
+    pub open_faces: Vec<usize>,
     /// The CAD's unit, as its file names it.
     pub cad_unit: String,
     /// What the CAD was multiplied by.
@@ -87,7 +90,7 @@ pub(super) fn drive(
     settings: &Settings,
     mut clock: Clock,
 ) -> Result<Curved, Error> {
-    let Associated { boundary, mut association, periodic, cad_unit, cad_scale } = associated;
+    let Associated { boundary, mut association, open_faces, periodic, cad_unit, cad_scale } = associated;
     linear.periodic_mut().extend(periodic);
     let case = Case { settings, boundary: &boundary, association: &association };
     let Continued { mut level, mut smoothed, notes, below, lower_orders } =
@@ -121,6 +124,7 @@ pub(super) fn drive(
         certificate,
         walls,
         off_cad,
+        open_faces,
         cad_unit,
         cad_scale,
         seconds,

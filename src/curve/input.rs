@@ -4,7 +4,7 @@ use cad::Model;
 
 use super::error::Error;
 use super::settings::Settings;
-use crate::associate::{Association, Candidates, Linkage, classify};
+use crate::associate::{Association, Candidates, Linkage, classify, open_faces, open_notes};
 use crate::certify;
 use crate::element::Order;
 use crate::mesh::{Boundary, Mesh, Periodic};
@@ -40,6 +40,8 @@ pub(super) fn check_cad(cad: &Model) -> Result<(), Error> {
 pub(super) struct Associated {
     pub(super) boundary: Boundary,
     pub(super) association: Association,
+    /// Faces that stay straight though they seem to belong to a curved wall.
+    pub(super) open_faces: Vec<usize>,
     /// Periodic pairs of which the linkage knows and the mesh does not.
     pub(super) periodic: Vec<Periodic>,
     pub(super) cad_unit: String,
@@ -61,7 +63,10 @@ impl Associated {
         let known: Vec<_> = linear.periodic().iter().map(|pair| pair.slave).collect();
         let unknown = classified.candidates.periodic.into_iter().filter(|pair| !known.contains(&pair.slave));
         let periodic = unknown.collect();
+        let mut association = classified.association;
+        let open_faces = open_faces(linear, &boundary, &association, &straight);
+        association.notes.extend(open_notes(linear, &boundary, &open_faces));
         let (cad_unit, cad_scale) = (cad.unit().name.clone(), cad.scale());
-        Ok(Associated { association: classified.association, periodic, boundary, cad_unit, cad_scale })
+        Ok(Associated { association, open_faces, periodic, boundary, cad_unit, cad_scale })
     }
 }

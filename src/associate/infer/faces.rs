@@ -37,6 +37,10 @@ pub(super) fn decide(
         (0..boundary.faces.len()).map(|f| candidates(f, boundary, joints, incidence, &sides[f])).collect();
     strike_wrong_sides(&mut candidates);
     grow(boundary, joints, along, &mut candidates);
+    for (f, own) in candidates.iter_mut().enumerate().filter(|(_, own)| own.len() > 1) {
+        keep_one_of_coincident(own, joints, &sides[f], incidence.slack(boundary, f));
+    }
+    follow_neighbours(boundary, joints, incidence, along, &mut candidates);
     let outcome = |f: usize, left: &Vec<FaceCandidate>| match left[..] {
         [only] => Ok(only.face),
         [] => {
@@ -122,6 +126,50 @@ fn grow(boundary: &Boundary, joints: &Joints<'_>, along: &[Vec<EdgeId>], candida
                 if candidates[other].len() == 1 {
                     decided.push_back(other);
                 }
+            }
+        }
+    }
+}
+
+/// Keeps the first of CAD faces that coincide where the mesh face is: solids that touch, and faces that a file holds twice, have them.
+fn keep_one_of_coincident(own: &mut Vec<FaceCandidate>, joints: &Joints<'_>, side: &Side, slack: f64) {
+    let Some(foot) = joints.face(own[0].face).and_then(|group| group.closest(side.middle, None)) else { return };
+    let coincides = |candidate: &FaceCandidate| {
+        joints.face(candidate.face).is_some_and(|group| group.distance(foot.point) <= slack)
+    };
+    if own.iter().all(coincides) {
+        own.truncate(1); // the smallest number comes first
+    }
+}
+
+/// Lets faces that no CAD face seems to run along, though one holds all their corners, go with their neighbours: coarse faces beside a
+/// pole or on a small radius turn by any angle from the CAD.
+fn follow_neighbours(
+    boundary: &Boundary,
+    joints: &Joints<'_>,
+    incidence: &Incidence,
+    along: &[Vec<EdgeId>],
+    candidates: &mut [Vec<FaceCandidate>],
+) {
+    let holds = |f: usize, id: FaceId| boundary.corners[f].iter().all(|n| incidence.faces[n.index()].contains(&id));
+    loop {
+        let mut found: Vec<(usize, FaceCandidate)> = Vec::new();
+        for (edge, faces) in boundary.edge_faces.iter().enumerate() {
+            let &[a, b] = &faces[..] else { continue };
+            for (open, decided) in [(a, b), (b, a)] {
+                let ([], [own]) = (&candidates[open][..], &candidates[decided][..]) else { continue };
+                let bounds = |id: &EdgeId| joints.faces_of(*id).contains(&own.face) && !joints.is_seam(*id);
+                if holds(open, own.face) && !along[edge].iter().any(bounds) {
+                    found.push((open, *own));
+                }
+            }
+        }
+        if found.is_empty() {
+            return;
+        }
+        for (face, candidate) in found {
+            if candidates[face].is_empty() {
+                candidates[face].push(candidate);
             }
         }
     }

@@ -22,6 +22,8 @@ pub struct Incidence {
     edges: Vec<Vec<(EdgeId, f64)>>,
     /// CAD vertices within tolerance, ascending: unsewn faces have each their own.
     pub vertices: Vec<Vec<VertexId>>,
+    /// How far each boundary node may be from what holds it; `None` inside the volume.
+    slack: Vec<Option<f64>>,
 }
 
 impl Incidence {
@@ -61,7 +63,12 @@ impl Incidence {
             model.vertices().iter().filter(near).map(|vertex| vertex.id).collect()
         };
         let vertices = (0..mesh.points().len()).into_par_iter().map(vertex).collect();
-        Incidence { faces, edges, vertices }
+        Incidence { faces, edges, vertices, slack }
+    }
+
+    /// How far the nodes of a boundary face may be from what holds them.
+    pub(super) fn slack(&self, boundary: &Boundary, face: usize) -> f64 {
+        boundary.corners[face].iter().filter_map(|n| self.slack[n.index()]).fold(0.0, f64::max)
     }
 
     /// For every boundary edge the CAD edges that it runs along: both ends lie on the CAD edge with no other node between them, and the foot of
@@ -99,7 +106,8 @@ impl Incidence {
 fn slacks(mesh: &Mesh, boundary: &Boundary, tolerance: &Tolerance) -> Vec<Option<f64>> {
     let mut shortest = vec![f64::INFINITY; mesh.points().len()];
     let cells = mesh.cells();
-    for [a, b] in cells.iter().flat_map(|cell| cell.edges()).chain(boundary.edges.iter().copied()) {
+    let of_cells = cells.iter().filter(|_| !tolerance.is_wide()).flat_map(|cell| cell.edges());
+    for [a, b] in of_cells.chain(boundary.edges.iter().copied()) {
         let length = mesh.points()[a.index()].distance(mesh.points()[b.index()]);
         for end in [a, b] {
             shortest[end.index()] = shortest[end.index()].min(length);

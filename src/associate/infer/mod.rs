@@ -20,7 +20,7 @@ mod smooth_groups;
 
 use cad::{Aabb, FaceId, Model};
 
-use super::{Candidates, Joints, sides};
+use super::{Candidates, Joints, Side, sides};
 use crate::mesh::{Boundary, Mesh};
 pub use incidence::Incidence;
 
@@ -29,30 +29,56 @@ pub const ON_CAD: f64 = 1e-5;
 /// The tolerance where none is asked for stays below this fraction of the shortest mesh edge at a node.
 const OF_EDGE: f64 = 0.1;
 
+/// The wider tolerance that is tried where this one leaves faces open; fraction of the mesh's bounding-box diagonal.
+const WIDE: f64 = 1e-4;
+
 /// How far a node may be from a CAD entity that holds it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     distance: f64,
-    local: bool,
+    limit: Limit,
+}
+
+/// What a tolerance is limited by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Limit {
+    /// A fraction of the shortest mesh edge at the node.
+    AnyEdge,
+    /// A fraction of the shortest edge of the boundary: first cells may be lower than the CAD is exact.
+    BoundaryEdge,
+    /// Nothing.
+    None,
 }
 
 impl Tolerance {
     /// [`ON_CAD`] of the mesh's bounding-box diagonal, and at most a tenth of the shortest mesh edge at the node.
     #[must_use]
     pub fn of(mesh: &Mesh) -> Tolerance {
-        let box_size = Aabb::of_points(mesh.points().iter().copied()).diagonal();
-        Tolerance { distance: ON_CAD * box_size, local: true }
+        Tolerance {
+            distance: ON_CAD * Aabb::of_points(mesh.points().iter().copied()).diagonal(),
+            limit: Limit::AnyEdge,
+        }
     }
 
     /// This distance at all nodes.
     #[must_use]
     pub fn fixed(distance: f64) -> Tolerance {
-        Tolerance { distance, local: false }
+        Tolerance { distance, limit: Limit::None }
+    }
+
+    /// The wider one to be tried next, for meshes in single precision and CAD that is less exact than the first cells are high.
+    fn wider(&self) -> Option<Tolerance> {
+        let wide = Tolerance { distance: self.distance * WIDE / ON_CAD, limit: Limit::BoundaryEdge };
+        (self.limit == Limit::AnyEdge).then_some(wide)
+    }
+
+    fn is_wide(&self) -> bool {
+        self.limit == Limit::BoundaryEdge
     }
 
     /// At a node whose shortest edge has this length.
     fn at(&self, shortest: f64) -> f64 {
-        if self.local { self.distance.min(OF_EDGE * shortest) } else { self.distance }
+        if self.limit == Limit::None { self.distance } else { self.distance.min(OF_EDGE * shortest) }
     }
 }
 
@@ -98,18 +124,41 @@ impl Inference {
     }
 }
 
-/// Associates the boundary with the CAD by geometry.
+/// Associates the boundary with the CAD by geometry; where the tolerance leaves faces open, with a wider one if that decides more.
 #[must_use]
 pub fn infer(mesh: &Mesh, boundary: &Boundary, model: &Model, tolerance: &Tolerance) -> Inference {
     let joints = Joints::new(model);
-    let incidence = Incidence::new(mesh, boundary, model, &joints, tolerance);
-    let along = incidence.along(mesh, boundary, model);
     let sides = sides(mesh, boundary);
-    let decided = faces::decide(boundary, &joints, &incidence, &along, &sides);
-    let (classifications, doubts) = smooth_groups::join(boundary, model, &joints, &incidence, &sides, decided);
+    let first = infer_within(mesh, boundary, model, &joints, &sides, tolerance);
+    let Some(wider) = tolerance.wider().filter(|_| !first.faces.is_empty()) else { return first };
+    let mut second = infer_within(mesh, boundary, model, &joints, &sides, &wider);
+    let more = first.faces.len().saturating_sub(second.faces.len());
+    if more == 0 {
+        return first;
+    }
+    second.candidates.notes.push(format!(
+        "{more} faces are farther from the CAD than {:.1e}, or than a tenth of the mesh edges there; they were associated with it \
+         within {:.1e}",
+        tolerance.distance, wider.distance
+    ));
+    second
+}
+
+fn infer_within(
+    mesh: &Mesh,
+    boundary: &Boundary,
+    model: &Model,
+    joints: &Joints<'_>,
+    sides: &[Side],
+    tolerance: &Tolerance,
+) -> Inference {
+    let incidence = Incidence::new(mesh, boundary, model, joints, tolerance);
+    let along = incidence.along(mesh, boundary, model);
+    let decided = faces::decide(boundary, joints, &incidence, &along, sides);
+    let (classifications, doubts) = smooth_groups::join(boundary, model, joints, &incidence, sides, decided);
     let mut candidates =
         Candidates { trusted: true, sheets: faces::sheets(mesh, boundary, &classifications), ..Candidates::default() };
-    let strings = edges::strings(boundary, model, &joints, &along, &classifications);
+    let strings = edges::strings(boundary, model, joints, &along, &classifications);
     candidates.points = edges::points(boundary, model, &incidence, &strings);
     candidates.strings = strings.candidates;
     Inference { candidates, faces: doubts, edges: strings.doubts }

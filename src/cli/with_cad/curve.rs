@@ -234,7 +234,7 @@ fn exit_code(curved: &Curved) -> u8 {
         NOT_CERTIFIED
     } else if curved.smoothed.stopped {
         STOPPED
-    } else if !curved.off_cad.is_empty() {
+    } else if !curved.off_cad.is_empty() || !curved.open_faces.is_empty() {
         OFF_CAD
     } else {
         DONE
