@@ -75,7 +75,7 @@ pub fn classify(
         other => other,
     };
     // Faces of which the tags say nothing that holds are left to geometry.
-    let inference = infer(mesh, boundary, model, &Tolerance::of(mesh));
+    let mut inference = infer(mesh, boundary, model, &Tolerance::of(mesh));
     let holds = |sheet: &&Candidate<usize>| {
         let alone = Candidates { sheets: vec![(*sheet).clone()], ..Candidates::default() };
         associate(mesh, boundary, model, &alone, max_offset).is_ok()
@@ -84,8 +84,11 @@ pub fn classify(
     let said: FxHashSet<usize> = held_by_tags.iter().flat_map(|sheet| sheet.items.iter().copied()).collect();
     let found: FxHashSet<usize> =
         inference.candidates.sheets.iter().flat_map(|sheet| sheet.items.iter().copied()).collect();
+    inference.faces.retain(|(face, _)| !said.contains(face));
     if found.is_subset(&said) {
-        return Ok(by_tags?);
+        let mut classified = by_tags?;
+        classified.inference = Some(inference);
+        return Ok(classified);
     }
     let mut candidates = inference.candidates.clone();
     for sheet in held_by_tags {

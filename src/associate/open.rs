@@ -1,41 +1,40 @@
-//! Boundary faces that stay straight though they seem to belong to a curved wall.
+//! Boundary faces that belong to the CAD and stay straight all the same, as it could not be decided where.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use glam::DVec3;
+use rustc_hash::FxHashSet;
 
-use super::{Association, Classification};
-use crate::mesh::{Boundary, EntityKey, Mesh};
+use super::{Association, Classification, Doubt, Inference};
+use crate::mesh::{Boundary, EntityKey, Mesh, NodeId};
 
-/// Turns between neighbouring faces, in radians, that make a wall of them that is curved: less is a plane with rounding, more an edge.
-const CURVED: std::ops::Range<f64> = 1e-3..0.7;
-
-/// Faces that lie on no CAD and in no plane, of patches that were not to stay straight, and turn smoothly from a neighbour: by index in
-/// [`Boundary::faces`], rising.
+/// Faces that geometry left undecided though all their points are on the CAD, or though they go on in a face that is, across an edge
+/// that is no CAD edge; of patches that were not to stay straight. By index in [`Boundary::faces`], rising.
+///
+/// Faces of a patch that is not part of the CAD, such as a far field, are none.
 #[must_use]
 pub fn open_faces(
-    mesh: &Mesh,
     boundary: &Boundary,
     association: &Association,
+    inference: &Inference,
     straight: &BTreeSet<EntityKey>,
 ) -> Vec<usize> {
-    let is_open = |face: usize| {
-        association.faces[face] == Classification::Straight && !straight.contains(&boundary.faces[face].entity)
-    };
-    let mut found = BTreeSet::new();
-    for faces in &boundary.edge_faces {
-        let &[a, b] = &faces[..] else { continue };
-        if !is_open(a) && !is_open(b) {
-            continue;
-        }
-        let [first, second] = [a, b].map(|face| normal(mesh, boundary, face));
-        let turn = first.angle_between(second);
-        // Neighbours may be listed in opposite directions.
-        if CURVED.contains(&turn.min(std::f64::consts::PI - turn)) {
-            found.extend([a, b].into_iter().filter(|&face| is_open(face)));
+    let strings = inference.candidates.strings.iter().flat_map(|string| &string.items);
+    let on_cad_edges: FxHashSet<usize> = strings.filter_map(|&ends: &[NodeId; 2]| boundary.edge(ends)).collect();
+    let decided = |face: usize| matches!(association.faces[face], Classification::Surface(_));
+    let mut goes_on = FxHashSet::default();
+    for (_, faces) in boundary.edge_faces.iter().enumerate().filter(|(edge, _)| !on_cad_edges.contains(edge)) {
+        if faces.iter().any(|&face| decided(face)) {
+            goes_on.extend(faces.iter().copied());
         }
     }
-    found.into_iter().collect()
+    let is_open = |(face, doubt): &&(usize, Doubt)| {
+        association.faces[*face] == Classification::Straight
+            && !straight.contains(&boundary.faces[*face].entity)
+            && (!matches!(doubt, Doubt::OffCad | Doubt::PartlyOffCad) || goes_on.contains(face))
+    };
+    let mut open: Vec<usize> = inference.faces.iter().filter(is_open).map(|(face, _)| *face).collect();
+    open.sort_unstable();
+    open
 }
 
 /// What a user should know of open faces, patch by patch.
@@ -45,18 +44,11 @@ pub fn open_notes(mesh: &Mesh, boundary: &Boundary, open: &[usize]) -> Vec<Strin
     open.iter().for_each(|&face| *patches.entry(boundary.faces[face].entity).or_default() += 1);
     let note = |(entity, count): (EntityKey, usize)| {
         format!(
-            "{}: {count} faces seem to belong to a curved wall, but no CAD face was found for them, and they stay straight; \
+            "{}: {count} faces belong to the CAD, but it is open on which of its faces they lie, and they stay straight; \
              --dry-run says why, and --straight {} accepts it",
             mesh.label(entity),
             entity.tag
         )
     };
     patches.into_iter().map(note).collect()
-}
-
-/// The normal of a linear face, of any length.
-fn normal(mesh: &Mesh, boundary: &Boundary, face: usize) -> DVec3 {
-    let corners: Vec<DVec3> = mesh.points_of(&boundary.corners[face]).collect();
-    let from = corners[0];
-    corners[1..].windows(2).map(|pair| (pair[0] - from).cross(pair[1] - from)).sum()
 }

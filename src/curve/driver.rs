@@ -43,8 +43,7 @@ pub struct Curved {
     pub walls: Walls,
     /// Boundary faces that are off the CAD, so that the elements behind them are valid.
     pub off_cad: Vec<OffCadFace>,
-    /// Boundary faces, by index, that no CAD was found for and that stay straight, though they seem to belong to a curved wall and were not
-    /// asked to stay straight.
+    /// Boundary faces, by index, that belong to the CAD and stay straight, as it could not be decided on which of its faces they lie.
     pub open_faces: Vec<usize>,
     /// The CAD's unit, as its file names it.
     pub cad_unit: String,

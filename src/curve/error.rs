@@ -72,7 +72,7 @@ pub enum JobError {
         /// The files that it is about, where the cause does not name them.
         about: String,
         /// Why.
-        cause: Error,
+        cause: Box<Error>,
     },
 }
 
@@ -86,6 +86,6 @@ impl JobError {
             Error::NoFaces => format!("{cad}: "),
             _ => format!("{mesh}: "),
         };
-        JobError::Curve { about, cause }
+        JobError::Curve { about, cause: Box::new(cause) }
     }
 }

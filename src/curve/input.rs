@@ -40,7 +40,7 @@ pub(super) fn check_cad(cad: &Model) -> Result<(), Error> {
 pub(super) struct Associated {
     pub(super) boundary: Boundary,
     pub(super) association: Association,
-    /// Faces that stay straight though they seem to belong to a curved wall.
+    /// Faces that belong to the CAD and stay straight, as it could not be decided where they lie.
     pub(super) open_faces: Vec<usize>,
     /// Periodic pairs of which the linkage knows and the mesh does not.
     pub(super) periodic: Vec<Periodic>,
@@ -64,7 +64,9 @@ impl Associated {
         let unknown = classified.candidates.periodic.into_iter().filter(|pair| !known.contains(&pair.slave));
         let periodic = unknown.collect();
         let mut association = classified.association;
-        let open_faces = open_faces(linear, &boundary, &association, &straight);
+        let inference = classified.inference.as_ref();
+        let open = |inference| open_faces(&boundary, &association, inference, &straight);
+        let open_faces = inference.map_or_else(Vec::new, open);
         association.notes.extend(open_notes(linear, &boundary, &open_faces));
         let (cad_unit, cad_scale) = (cad.unit().name.clone(), cad.scale());
         Ok(Associated { association, open_faces, periodic, boundary, cad_unit, cad_scale })

@@ -44,8 +44,12 @@ pub(super) fn decide(
     let outcome = |f: usize, left: &Vec<FaceCandidate>| match left[..] {
         [only] => Ok(only.face),
         [] => {
-            let lost = boundary.corners[f].iter().all(|n| incidence.faces[n.index()].is_empty());
-            Err(if lost { Doubt::OffCad } else { Doubt::NoCommonFace })
+            let held = boundary.corners[f].iter().filter(|n| !incidence.faces[n.index()].is_empty()).count();
+            Err(match held {
+                0 => Doubt::OffCad,
+                held if held < boundary.corners[f].len() => Doubt::PartlyOffCad,
+                _ => Doubt::NoCommonFace,
+            })
         }
         _ => Err(Doubt::SeveralFaces(left.iter().map(|candidate| candidate.face).collect())),
     };

@@ -88,6 +88,9 @@ pub enum Doubt {
     /// No CAD face holds any of its corners: the patch may not be part of the CAD.
     #[error("its points are on no CAD face")]
     OffCad,
+    /// Some of its corners are on the CAD, and some are not.
+    #[error("some of its points are on no CAD face")]
+    PartlyOffCad,
     /// Each corner is on the CAD, but on no common face.
     #[error(
         "its points are on the CAD, but no CAD face, and no set of faces that meet smoothly, contains them all and runs along it"

@@ -72,7 +72,7 @@ impl<'a> Field<'a> {
         let (mesh, linear_nodes) = (&elevated.mesh, elevated.linear_nodes);
         let corners = (0..).zip(wall).flat_map(|(face, own)| own.corners().iter().map(move |n| (n.index(), face)));
         let around = Incidence::new(linear_nodes, corners);
-        let points = &mesh.points()[..];
+        let points = mesh.points();
         let sought: Vec<u32> =
             (0..wall.len() as u32).filter(|&f| wall[f as usize].corners().iter().all(|n| seeds[n.index()])).collect();
         let bounds = |&f: &u32| Aabb::of_points(wall[f as usize].corners().iter().map(|n| points[n.index()]));

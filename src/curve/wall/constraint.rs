@@ -51,7 +51,7 @@ impl<'a> CadConstraint<'a> {
         };
         let unlike = periodic.images().iter().filter(|image| kind(image.node) != kind(image.of));
         let held = unlike.flat_map(|image| [image.node, image.of]).collect();
-        let (straight, linear_nodes) = (&elevated.mesh.points()[..], elevated.linear_nodes);
+        let (straight, linear_nodes) = (elevated.mesh.points(), elevated.linear_nodes);
         CadConstraint { case, straight, linear_nodes, wall, periodic, held }
     }
 
