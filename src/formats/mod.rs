@@ -11,6 +11,7 @@ mod detect;
 mod error;
 mod field;
 mod format;
+mod gmf;
 pub mod msh;
 mod node_order;
 mod numbers;

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 #[cfg(feature = "cgns")]
 use super::cgns;
 use super::format::{Format, Holds};
-use super::{msh, plot3d, su2, ugrid, vtk};
+use super::{gmf, msh, plot3d, su2, ugrid, vtk};
 use crate::element::Cell;
 
 /// All formats, the most telling marks first.
@@ -17,6 +17,8 @@ pub static REGISTRY: &[&Format] = &[
     &su2::FORMAT,
     &vtk::VTU,
     &vtk::LEGACY,
+    &gmf::BINARY,
+    &gmf::TEXT,
     &plot3d::FORMAT,
 ];
 
