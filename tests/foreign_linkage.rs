@@ -6,7 +6,6 @@ mod common;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::{Duration, Instant};
 
 use common::{fixture, root, sagitta};
 use sagitta::associate::{Classification, Linkage, classify};
@@ -130,19 +129,18 @@ fn the_m6_is_inferred() {
     sagitta(args!["validate", output, "--mesh", m6("msh"), "--cad", m6("egads"), "--strict"]).expect(0);
 }
 
-/// Runs the program with at most 1.5 GB of address space; it must end by itself within `limit`.
-fn limited(arguments: &[std::ffi::OsString], limit: Duration) -> (Option<i32>, String, String) {
-    let start = Instant::now();
+/// Runs the program with at most 1.5 GB of address space and 60 seconds of computing, however busy the machine is; beyond that the
+/// system ends it.
+fn limited(arguments: &[std::ffi::OsString]) -> (Option<i32>, String, String) {
     let mut shell = Command::new("sh");
-    shell.args(["-c", "ulimit -v 1500000; exec \"$@\"", "sh", env!("CARGO_BIN_EXE_sagitta")]);
+    shell.args(["-c", "ulimit -v 1500000; ulimit -t 60; exec \"$@\"", "sh", env!("CARGO_BIN_EXE_sagitta")]);
     let output = shell.args(arguments).output().unwrap();
-    assert!(start.elapsed() < limit, "{arguments:?} took {:?}", start.elapsed());
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
     (output.status.code(), text(output.stdout), text(output.stderr))
 }
 
 #[test]
-fn bad_files_are_told_of_within_seconds_and_bounds() {
+fn bad_files_are_reported_within_bounds() {
     let dir = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| -> PathBuf {
         let path = dir.path().join(name);
@@ -187,13 +185,12 @@ fn bad_files_are_told_of_within_seconds_and_bounds() {
     ];
     let (mesh, cad, output) =
         (fixture("cylinder_bl", "msh"), fixture("cylinder_bl", "step"), dir.path().join("out.msh"));
-    let limit = Duration::from_secs(20);
     for (name, text, usable, code) in cases {
         assert_ne!(text, good, "{name}: nothing was spoilt");
         let path = write(name, &text);
         for more in [&args![][..], &args!["--mesh", mesh, "--cad", cad]] {
             let arguments: Vec<_> = args!["validate", path].into_iter().chain(more.iter().cloned()).collect();
-            let (exit, stdout, stderr) = limited(&arguments, limit);
+            let (exit, stdout, stderr) = limited(&arguments);
             assert_eq!(exit, Some(1), "{name}: {stdout}{stderr}");
             let place = format!("{}:", path.display());
             let line = stdout.lines().find(|line| line.starts_with(&place) && line.contains(code));
@@ -207,7 +204,7 @@ fn bad_files_are_told_of_within_seconds_and_bounds() {
         let mut curve =
             args!["curve", mesh, "--cad", cad, "--linkage", path, "--order", "2", "-q", "-o", output].to_vec();
         curve.extend(args!["--max-sweeps", "1"]);
-        let (exit, _, stderr) = limited(&curve, limit);
+        let (exit, _, stderr) = limited(&curve);
         if usable {
             assert!(matches!(exit, Some(0 | 5)), "{name}: {exit:?} {stderr}");
         } else {
@@ -218,7 +215,7 @@ fn bad_files_are_told_of_within_seconds_and_bounds() {
 }
 
 #[test]
-fn large_files_take_seconds_and_little_memory() {
+fn large_files_take_little_time_and_memory() {
     // More than 30 MB of good faces of a mesh that is not at hand.
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("large.xml");
@@ -232,7 +229,7 @@ fn large_files_take_seconds_and_little_memory() {
     text.push_str("</MeshFace></MeshSheet></MeshModelReference></MeshFile></MeshLink>\n");
     std::fs::write(&path, &text).unwrap();
     assert!(text.len() > 30 << 20);
-    let (exit, stdout, stderr) = limited(&args!["validate", path], Duration::from_secs(20));
+    let (exit, stdout, stderr) = limited(&args!["validate", path]);
     assert_eq!(exit, Some(0), "{stdout}{stderr}");
 }
 

@@ -3,12 +3,15 @@
 
 #[macro_use]
 mod common;
+#[path = "common/random.rs"]
+mod random;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use common::{fixture, json, root, sagitta};
 use linkage_schema::{Entity, Resolution, resolve};
+use random::Random;
 use sagitta::element::Cell;
 use sagitta::formats::{self, WriteOptions};
 use sagitta::mesh::{Boundary, EntityKey, Mesh};
@@ -292,13 +295,9 @@ fn a_thin_cambered_plate_goes_to_its_own_side() {
 fn linear_nodes_off_the_cad() {
     let case = fixture("weeble", "msh").with_extension("");
     let good = formats::read(&case.with_extension("msh")).unwrap();
-    let mut noise = 1_u64;
-    let mut next = || {
-        noise = noise.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (noise >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
-    };
+    let mut random = Random(1);
     let mut shaken = good.clone();
-    shaken.points_mut().iter_mut().for_each(|x| *x += 1e-6 * glam::DVec3::new(next(), next(), next()));
+    shaken.points_mut().iter_mut().for_each(|x| *x += 1e-6 * random.vector());
     for (name, mut mesh, [least, most]) in [("mesh.msh", shaken, [1e-7, 2e-6]), ("mesh.b4.ugrid", good, [1e-9, 1e-6])] {
         mesh = without_tags(mesh);
         let dir = tempfile::tempdir().unwrap();

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use cad::{EntityId, Model, ReferenceError};
-use linkage_schema::{Document, Entity, GeometryFile, ModelLinks, Resolution};
+use linkage_schema::{Document, Entity, GeometryFile, ModelLinks, Resolution, Target};
 
 use super::{Candidate, Candidates, NotPeriodic, Numbering, Part, UnknownZone, periodic_records, periodic_sheets};
 use crate::element::Cell;
@@ -228,47 +228,56 @@ impl Reader<'_> {
 
     /// Sheets and strings that are called by the names which the mesh file gives to sets of faces and edges.
     fn named(&self, links: &ModelLinks, candidates: &mut Candidates) -> Result<(), LinkageError> {
-        let unknown = |place: String, label: &str, what: &str| {
-            format!("{place}: {label} refers to {what} by name, which the mesh file does not have; ignored")
-        };
         let known = |entity: EntityKey, name: &str| self.mesh.names_of(entity).iter().any(|own| own == name);
+        let faces = |name: &str| -> Vec<usize> {
+            let all = 0..self.boundary.faces.len();
+            all.filter(|&face| known(self.boundary.faces[face].entity, name)).collect()
+        };
         for sheet in &links.sheets {
             let label = format!("sheet {:?}", sheet.name().unwrap_or(""));
             let place = self.place(sheet.sheet.origin);
-            if let Some(name) = sheet.reference {
-                let faces = 0..self.boundary.faces.len();
-                let items: Vec<usize> = faces.filter(|&f| known(self.boundary.faces[f].entity, name)).collect();
-                let entities = sheet.target.as_deref().map_or(&[][..], |target| &target.entities);
-                let entities = self.entities(entities, &place, &label)?;
-                if items.is_empty() {
-                    candidates.notes.push(unknown(place, &label, &format!("{name:?}")));
-                } else {
-                    candidates.sheets.push(Candidate { label, items, entities });
-                }
-            } else if !sheet.named.is_empty() {
-                candidates.notes.push(unknown(place, &label, "faces"));
-            }
+            let some = (!sheet.named.is_empty()).then_some("faces");
+            let named = Named { label, place, name: sheet.reference, some, target: sheet.target.as_deref() };
+            candidates.sheets.extend(self.by_name(named, faces, &mut candidates.notes)?);
         }
+        let edges = |name: &str| -> Vec<[NodeId; 2]> {
+            let blocks = self.mesh.blocks().iter().filter(|block| block.cell == Cell::Line);
+            let own = blocks.filter(|block| known(block.entity, name));
+            own.flat_map(|block| block.elements(self.mesh.order()).map(|ends| [ends[0], ends[1]])).collect()
+        };
         for string in &links.strings {
             let label = format!("string {:?}", string.name().unwrap_or(""));
             let place = self.place(string.string.origin);
-            if let Some(name) = string.reference {
-                let blocks = self.mesh.blocks().iter().filter(|block| block.cell == Cell::Line);
-                let own = blocks.filter(|block| known(block.entity, name));
-                let ends = own.flat_map(|block| block.elements(self.mesh.order()).map(|ends| [ends[0], ends[1]]));
-                let items: Vec<[NodeId; 2]> = ends.collect();
-                let entities = string.target.as_deref().map_or(&[][..], |target| &target.entities);
-                let entities = self.entities(entities, &place, &label)?;
-                if items.is_empty() {
-                    candidates.notes.push(unknown(place, &label, &format!("{name:?}")));
-                } else {
-                    candidates.strings.push(Candidate { label, items, entities });
-                }
-            } else if !string.named.is_empty() {
-                candidates.notes.push(unknown(place, &label, "edges"));
-            }
+            let some = (!string.named.is_empty()).then_some("edges");
+            let named = Named { label, place, name: string.reference, some, target: string.target.as_deref() };
+            candidates.strings.extend(self.by_name(named, edges, &mut candidates.notes)?);
         }
         Ok(())
+    }
+
+    /// The candidate of what is called by name, with the `items` of the name; a note where there is none.
+    fn by_name<T>(
+        &self,
+        named: Named<'_>,
+        items: impl Fn(&str) -> Vec<T>,
+        notes: &mut Vec<String>,
+    ) -> Result<Option<Candidate<T>>, LinkageError> {
+        let Named { label, place, name, some, target } = named;
+        let mut unknown = |what: &str| {
+            notes
+                .push(format!("{place}: {label} refers to {what} by name, which the mesh file does not have; ignored"));
+        };
+        let Some(name) = name else {
+            some.map(unknown);
+            return Ok(None);
+        };
+        let entities = self.entities(target.map_or(&[], |target| &target.entities[..]), &place, &label)?;
+        let items = items(name);
+        if items.is_empty() {
+            unknown(&format!("{name:?}"));
+            return Ok(None);
+        }
+        Ok(Some(Candidate { label, items, entities }))
     }
 
     fn place(&self, origin: linkage_schema::Origin) -> String {
@@ -318,4 +327,15 @@ fn push<T>(candidates: &mut Vec<Candidate<T>>, candidate: Candidate<T>) {
         }
         _ => candidates.push(candidate),
     }
+}
+
+/// A sheet or string that a linkage file calls by name, or some items of it.
+struct Named<'n> {
+    label: String,
+    place: String,
+    /// The name of the whole.
+    name: Option<&'n str>,
+    /// What is called by names one by one, where anything is.
+    some: Option<&'static str>,
+    target: Option<&'n Target<'n>>,
 }

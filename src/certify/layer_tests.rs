@@ -65,12 +65,12 @@ fn spots_between_survey_points_are_found() {
                 let (mut low, mut high) = (0.0, 0.5);
                 for _ in 0..12 {
                     let middle = 0.5 * (low + high);
-                    if survey.least(&at(middle), &corners)[0] > 0.01 { low = middle } else { high = middle }
+                    if survey.least(&at(middle), &corners, None)[0] > 0.01 { low = middle } else { high = middle }
                 }
                 let points = at(low);
                 let shape = Shape { cell, order, points: &points, corners: Some(&corners), normal: None };
                 if let Verdict::Invalid { at, value } = judge.examine(&shape, &Settings::default()).verdict {
-                    let there = jacobian(cell, order, &points, at);
+                    let there = jacobian(cell, order, &points, at, None);
                     assert!(there <= value + 1e-9 && value <= 0.0, "{cell} {order} {at:?}: {there} for {value}");
                     found += 1;
                 }

@@ -19,7 +19,13 @@ mod layer_tests;
 #[cfg(test)]
 mod mesh_tests;
 mod pieces;
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod plane_tests;
 mod product;
+#[cfg(test)]
+#[path = "../../tests/common/random.rs"]
+mod random;
 #[cfg(test)]
 #[allow(clippy::panic)]
 mod random_tests;

@@ -5,50 +5,29 @@ use glam::DVec3;
 use super::form::Form;
 use super::pieces::LINE;
 use super::product::{Product, Workspace};
+pub(super) use super::random::Random;
 use super::{Bounds, Finding, Judge, Method, Settings, Shape, Verdict};
 use crate::element::{Cell, Net, Order, basis, bernstein, lattice};
 
-/// A small generator of random numbers, the same on every machine (splitmix64).
-pub(super) struct Random(pub(super) u64);
-
-impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
+/// A point of a cell in reference coordinates, often on its boundary.
+pub(super) fn inside(cell: Cell, random: &mut Random) -> [f64; 3] {
+    let mut at = [random.unit(), random.unit(), random.unit()];
+    if random.unit() < 0.3 {
+        let axis = (random.unit() * 3.0) as usize;
+        at[axis.min(2)] = if random.unit() < 0.5 { 0.0 } else { 1.0 };
     }
-
-    /// In `[0, 1)`.
-    pub(super) fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    at[cell.dimension()..].fill(0.0);
+    let tight = match cell {
+        Cell::Tet => 3,
+        Cell::Prism | Cell::Triangle => 2,
+        _ => 0,
+    };
+    if at[..tight].iter().sum::<f64>() > 1.0 {
+        let sum: f64 = at[..tight].iter().sum();
+        let shrink = if random.unit() < 0.2 { 1.0 } else { random.unit() } / sum;
+        at[..tight].iter_mut().for_each(|x| *x *= shrink);
     }
-
-    /// A vector in `[-1, 1)^3`.
-    pub(super) fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.unit(), self.unit(), self.unit()) * 2.0 - 1.0
-    }
-
-    /// A point of a cell in reference coordinates, often on its boundary.
-    pub(super) fn inside(&mut self, cell: Cell) -> [f64; 3] {
-        let mut at = [self.unit(), self.unit(), self.unit()];
-        if self.unit() < 0.3 {
-            let axis = (self.unit() * 3.0) as usize;
-            at[axis.min(2)] = if self.unit() < 0.5 { 0.0 } else { 1.0 };
-        }
-        let tight = match cell {
-            Cell::Tet => 3,
-            Cell::Prism => 2,
-            _ => 0,
-        };
-        if at[..tight].iter().sum::<f64>() > 1.0 {
-            let sum: f64 = at[..tight].iter().sum();
-            let shrink = if self.unit() < 0.2 { 1.0 } else { self.unit() } / sum;
-            at[..tight].iter_mut().for_each(|x| *x *= shrink);
-        }
-        at
-    }
+    at
 }
 
 /// Nodes of the straight element over the given corners.
@@ -67,14 +46,14 @@ pub(super) fn unit_corners(cell: Cell) -> Vec<DVec3> {
 }
 
 /// The Jacobian determinant at a point in reference coordinates, by the basis functions' gradients.
-pub(super) fn jacobian(cell: Cell, order: Order, points: &[DVec3], at: [f64; 3]) -> f64 {
+pub(super) fn jacobian(cell: Cell, order: Order, points: &[DVec3], at: [f64; 3], normal: Option<DVec3>) -> f64 {
     let mut columns = [DVec3::ZERO; 3];
     for (slopes, &x) in basis::gradients(cell, order, at).into_iter().zip(points) {
         for axis in 0..3 {
             columns[axis] += (x - points[0]) * slopes[axis];
         }
     }
-    columns[0].cross(columns[1]).dot(columns[2])
+    columns[0].cross(columns[1]).dot(normal.unwrap_or(columns[2]))
 }
 
 pub(super) fn examine(cell: Cell, order: Order, points: &[DVec3], corners: Option<&[DVec3]>) -> Finding {
@@ -121,10 +100,10 @@ fn coefficients_sum_to_the_jacobian() {
         product.coefficients(&mut work, &mut net);
         let space = Net::jacobian(cell, order);
         for _ in 0..20 {
-            let at = random.inside(cell);
+            let at = inside(cell, &mut random);
             let terms = space.indices().into_iter().zip(&net);
             let sum: f64 = terms.map(|(index, c)| c * polynomial(space, index, at)).sum();
-            let expected = jacobian(cell, order, &points, at);
+            let expected = jacobian(cell, order, &points, at, None);
             assert!((sum - expected).abs() < 1e-10, "{cell} {order} at {at:?}: {sum} for {expected}");
         }
     }

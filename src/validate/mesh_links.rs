@@ -1,6 +1,8 @@
 //! Faces, edges and points of the file that the mesh does not have, or not on its boundary.
 
-use linkage_schema::{Code, Encoding, Findings, ModelLinks, Origin, PointRun, SheetLinks, StringLinks, VertexRef};
+use linkage_schema::{
+    Code, Encoding, EntityLink, Findings, ModelLinks, Origin, PointRun, SheetLinks, StringLinks, VertexRef,
+};
 use rustc_hash::FxHashSet;
 
 use super::called;
@@ -140,34 +142,30 @@ fn names(linked: &LinkedMesh<'_>, links: &ModelLinks<'_>, findings: &mut Finding
         linked.mesh.physical_names().iter().any(|own| kind(own) && own.name == name)
     };
     for sheet in &links.sheets {
-        let runs = sheet.named.iter().map(|link| (link.run.origin, format!("{} faces", link.run.references.len())));
-        let whole = sheet
-            .reference
-            .filter(|name| !known(name, PhysicalName::is_of_surfaces))
-            .map(|name| (sheet.sheet.origin, format!("{name:?}")));
-        for (origin, what) in runs.chain(whole) {
-            findings.push(Code::UnknownMeshName, origin, || {
-                format!(
-                    "{} refers to {what} by name, which this mesh file does not have",
-                    called("MeshSheet", sheet.name())
-                )
-            });
-        }
+        let whole = sheet.reference.filter(|name| !known(name, PhysicalName::is_of_surfaces));
+        let whole = whole.map(|name| (sheet.sheet.origin, name));
+        unknown_names(&called("MeshSheet", sheet.name()), whole, &sheet.named, "faces", findings);
     }
     for string in &links.strings {
-        let runs = string.named.iter().map(|link| (link.run.origin, format!("{} edges", link.run.references.len())));
-        let whole = string
-            .reference
-            .filter(|name| !known(name, PhysicalName::is_of_curves))
-            .map(|name| (string.string.origin, format!("{name:?}")));
-        for (origin, what) in runs.chain(whole) {
-            findings.push(Code::UnknownMeshName, origin, || {
-                format!(
-                    "{} refers to {what} by name, which this mesh file does not have",
-                    called("MeshString", string.name())
-                )
-            });
-        }
+        let whole = string.reference.filter(|name| !known(name, PhysicalName::is_of_curves));
+        let whole = whole.map(|name| (string.string.origin, name));
+        unknown_names(&called("MeshString", string.name()), whole, &string.named, "edges", findings);
+    }
+}
+
+/// A finding for the unknown name of a whole sheet or string, and for each run of items that it calls by name.
+fn unknown_names(
+    who: &str,
+    whole: Option<(Origin, &str)>,
+    runs: &[EntityLink<'_>],
+    noun: &str,
+    findings: &mut Findings,
+) {
+    let runs = runs.iter().map(|link| (link.run.origin, format!("{} {noun}", link.run.references.len())));
+    for (origin, what) in runs.chain(whole.map(|(origin, name)| (origin, format!("{name:?}")))) {
+        findings.push(Code::UnknownMeshName, origin, || {
+            format!("{who} refers to {what} by name, which this mesh file does not have")
+        });
     }
 }
 

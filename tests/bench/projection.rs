@@ -5,11 +5,14 @@
 
 #[path = "../common/iges.rs"]
 mod iges;
+#[path = "../common/random.rs"]
+mod random;
 
 use cad::{FaceId, Foot, Group, Hint, Kind, Model, ReadOptions};
 use glam::DVec3;
 use iges::Patch;
 use opencascade_sys as sys;
+use random::Random;
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -29,19 +32,6 @@ struct Case {
     queries: usize,
     /// Queries of OCCT's search, which is slow.
     global: usize,
-}
-
-/// Deterministic numbers in 0..1 (splitmix64).
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
 }
 
 /// A tapered, swept and twisted NACA 0012 wing: `s` runs around the section from the trailing edge, `t` along the span.

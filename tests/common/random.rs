@@ -1,5 +1,8 @@
-//! Numbers that follow from a seed (SplitMix64, Steele et al. 2014).
+//! Numbers that follow from a seed (SplitMix64, Steele et al. 2014): the one generator of all tests, of the unit tests and the `cad`
+//! crate too.
 #![allow(dead_code, unreachable_pub)] // each program uses its part
+
+use glam::DVec3;
 
 pub struct Random(pub u64);
 
@@ -16,14 +19,29 @@ impl Random {
         (self.bits() % n as u64) as usize
     }
 
+    /// In `[0, 1)`.
+    pub fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
     /// Even between two bounds.
     pub fn between(&mut self, from: f64, to: f64) -> f64 {
-        from + (to - from) * ((self.bits() >> 11) as f64 / (1_u64 << 53) as f64)
+        from + (to - from) * self.unit()
     }
 
     /// Its logarithm is even between those of two bounds.
     pub fn decade(&mut self, from: f64, to: f64) -> f64 {
         self.between(from.ln(), to.ln()).exp()
+    }
+
+    /// A vector in `[-1, 1)^3`.
+    pub fn vector(&mut self) -> DVec3 {
+        DVec3::new(self.unit(), self.unit(), self.unit()) * 2.0 - 1.0
+    }
+
+    /// A point of a box.
+    pub fn in_box(&mut self, min: DVec3, max: DVec3) -> DVec3 {
+        min + (max - min) * DVec3::new(self.unit(), self.unit(), self.unit())
     }
 }
 
