@@ -72,7 +72,7 @@ pub(in crate::cli) struct Options {
     /// Weight of shape against size, equation (2); lower it to 0.3 where Jacobians stay small [default: (p-1)/p]
     #[arg(long, value_name = "0..1", value_parser = fraction)]
     alpha: Option<f64>,
-    /// What moves the nodes
+    /// What moves the nodes: L-BFGS on all active nodes together, or the paper's engine, to compare with
     #[arg(long, value_enum, value_name = "ENGINE", default_value_t)]
     engine: smooth::Engine,
     /// Write the costs after each sweep, with the time, as CSV

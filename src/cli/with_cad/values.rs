@@ -31,10 +31,6 @@ impl ValueEnum for Engine {
     }
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
-        let help = match self {
-            Engine::QuasiNewton => "preconditioned L-BFGS on all active nodes together",
-            Engine::Gradient => "the paper's: each node up the gradient of its own cost; to compare with",
-        };
-        Some(PossibleValue::new(self.name()).help(help))
+        Some(PossibleValue::new(self.name()))
     }
 }
