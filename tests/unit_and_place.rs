@@ -114,13 +114,13 @@ fn reading_the_cad_is_given_up_in_time() {
 #[test]
 fn a_wrong_factor_is_refused() {
     let place = Place::new();
-    place.refuses(Input::default().with(&["--cad-scale", "25.4"]), &["cylinder_bl.step", "factor near 0.03937"]);
+    place.refuses(Input::default().with(&["--cad-scale", "25.4"]), &["cylinder_bl.step", "factor of about 0.03937"]);
 }
 
 #[test]
 fn a_factor_between_no_two_units_is_not_guessed() {
     let place = Place::new();
-    place.refuses(Input::mesh(scaled(&place, 3.0)).with(&["--cad-scale", "auto"]), &["scaled_3.msh", "factor near 3"]);
+    place.refuses(Input::mesh(scaled(&place, 3.0)).with(&["--cad-scale", "auto"]), &["scaled_3.msh", "factor of about 3"]);
 }
 
 #[test]
