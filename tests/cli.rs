@@ -331,8 +331,9 @@ fn figures_are_those_of_the_mesh_that_is_written() {
         parts.blocks.iter_mut().filter(|b| b.entity == EntityKey::new(2, 2)).for_each(|b| b.entity.tag = 102);
     });
     let report = place.dir.path().join("out/report.json");
-    let mut arguments =
-        Input::mesh(&mesh).with(&["--curve-layers", "1", "--max-sweeps", "0"]).arguments(&place.output());
+    let mut arguments = Input::mesh(&mesh)
+        .with(&["--curve-layers", "1", "--max-sweeps", "0", "--straight", "102"])
+        .arguments(&place.output());
     arguments.extend(args!["--report", report]);
     let outcome = sagitta(&arguments).expect(3);
     let report = json(&report);

@@ -1,11 +1,10 @@
 //! Where the association of a mesh comes from: a linkage file, its entity tags, or its geometry.
 
 use cad::Model;
-use rustc_hash::FxHashSet;
 
+use super::witnesses::combined;
 use super::{
-    AssociateError, Association, Candidate, Candidates, Inference, Linkage, LinkageError, Tolerance, associate, infer,
-    linked,
+    AssociateError, Association, Candidates, Inference, Linkage, LinkageError, Tolerance, associate, infer, linked,
 };
 use crate::mesh::{Boundary, Mesh};
 
@@ -76,28 +75,11 @@ pub fn classify(
     };
     // Faces of which the tags say nothing that holds are left to geometry.
     let mut inference = infer(mesh, boundary, model, &Tolerance::of(mesh));
-    let holds = |sheet: &&Candidate<usize>| {
-        let alone = Candidates { sheets: vec![(*sheet).clone()], ..Candidates::default() };
-        associate(mesh, boundary, model, &alone, max_offset).is_ok()
-    };
-    let held_by_tags: Vec<&Candidate<usize>> = tags.sheets.iter().filter(holds).collect();
-    let said: FxHashSet<usize> = held_by_tags.iter().flat_map(|sheet| sheet.items.iter().copied()).collect();
-    let found: FxHashSet<usize> =
-        inference.candidates.sheets.iter().flat_map(|sheet| sheet.items.iter().copied()).collect();
-    inference.faces.retain(|(face, _)| !said.contains(face));
-    if found.is_subset(&said) {
+    let Some((candidates, source)) = combined(&tags, &mut inference, mesh, boundary, model, max_offset) else {
         let mut classified = by_tags?;
         classified.inference = Some(inference);
         return Ok(classified);
-    }
-    let mut candidates = inference.candidates.clone();
-    for sheet in held_by_tags {
-        let items: Vec<usize> = sheet.items.iter().copied().filter(|face| !found.contains(face)).collect();
-        if !items.is_empty() {
-            candidates.sheets.push(Candidate { items, ..sheet.clone() });
-        }
-    }
-    let source = if said.is_empty() { "geometry" } else { "geometry and the mesh's entity tags" };
+    };
     let mut classified = held(candidates, None, source.into())?;
     let [faces, edges] = [inference.undecided(), inference.edges.len()];
     classified.association.notes.push(format!(

@@ -28,6 +28,7 @@ mod propose;
 mod side;
 mod sizes;
 mod summary;
+mod witnesses;
 
 use glam::DVec3;
 

@@ -2,6 +2,7 @@
 
 use cad::{Aabb, Model};
 
+use super::witnesses::combined;
 use super::{AssociateError, Candidates, Inference, Tolerance, associate, infer};
 use crate::mesh::{Boundary, Mesh};
 
@@ -27,16 +28,20 @@ pub struct Proposal {
 pub fn propose(mesh: &Mesh, boundary: &Boundary, model: &Model, tolerance: Option<f64>, by_tags: bool) -> Proposal {
     let size = Aabb::of_points(mesh.points().iter().copied()).diagonal();
     let mut factor = cad::unit_factor(size, model.diagonal());
-    if by_tags {
-        let candidates = Candidates::by_tags(mesh, boundary, model);
-        match associate(mesh, boundary, model, &candidates, MAX_OFFSET) {
-            Ok(_) => return Proposal { candidates, inference: None, source: "the mesh's entity tags", factor: None },
-            Err(AssociateError::Scale { factor: own, .. }) => factor = Some(own),
-            Err(_) => {}
-        }
+    let tags = if by_tags { Candidates::by_tags(mesh, boundary, model) } else { Candidates::default() };
+    let is_whole = tags.sheets.iter().all(|sheet| !sheet.entities.is_empty());
+    let by_tags = by_tags.then(|| associate(mesh, boundary, model, &tags, MAX_OFFSET));
+    let of_tags = |candidates| Proposal { candidates, inference: None, source: "the mesh's entity tags", factor: None };
+    match &by_tags {
+        Some(Ok(_)) if is_whole => return of_tags(tags),
+        Some(Err(AssociateError::Scale { factor: own, .. })) => factor = Some(*own),
+        _ => {}
     }
     let tolerance = tolerance.map_or_else(|| Tolerance::of(mesh), Tolerance::fixed);
     let mut inference = infer(mesh, boundary, model, &tolerance);
-    let candidates = std::mem::take(&mut inference.candidates);
-    Proposal { candidates, inference: Some(inference), source: "geometry", factor }
+    match combined(&tags, &mut inference, mesh, boundary, model, MAX_OFFSET) {
+        Some((candidates, source)) => Proposal { candidates, inference: Some(inference), source, factor },
+        None if matches!(by_tags, Some(Ok(_))) => of_tags(tags),
+        None => Proposal { candidates: Candidates::default(), inference: Some(inference), source: "geometry", factor },
+    }
 }
