@@ -120,7 +120,10 @@ fn a_wrong_factor_is_refused() {
 #[test]
 fn a_factor_between_no_two_units_is_not_guessed() {
     let place = Place::new();
-    place.refuses(Input::mesh(scaled(&place, 3.0)).with(&["--cad-scale", "auto"]), &["scaled_3.msh", "factor of about 3"]);
+    place.refuses(
+        Input::mesh(scaled(&place, 3.0)).with(&["--cad-scale", "auto"]),
+        &["scaled_3.msh", "factor of about 3"],
+    );
 }
 
 #[test]
