@@ -137,8 +137,8 @@ fn output_that_cannot_be_written() {
         assert!(needles.iter().all(|needle| told.contains(needle)), "{needles:?} are not in: {told}");
         assert_eq!(names_in(&out), [""; 0], "{told}");
     };
-    tried(&out.join("curved.stl"), &[], &["curved.stl", ".msh, .cgns or .vtu"]);
-    tried(&out.join("curved"), &[], &["curved", ".msh, .cgns or .vtu"]);
+    tried(&out.join("curved.stl"), &[], &["curved.stl", ".msh, .cgns, .vtu, .meshb or .mesh"]);
+    tried(&out.join("curved"), &[], &["curved", ".msh, .cgns, .vtu, .meshb or .mesh"]);
     tried(&out.join("none/curved.msh"), &[], &["none/curved.msh", "No such file"]);
     tried(&out.join("curved.msh"), &["--report", &report.display().to_string()], &["none/report.json", "No such file"]);
 }

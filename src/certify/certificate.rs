@@ -5,8 +5,9 @@ use rayon::prelude::*;
 
 use super::contest::{Contest, Measure, SHARP};
 use super::elements::{Buffer, Elements, MeshElements};
+use super::judged::Judged;
 use super::{Bounds, Finding, Judge, Method, Settings, Shape, Verdict};
-use crate::element::{Cell, Order, basis};
+use crate::element::{Cell, basis};
 use crate::mesh::{ElementId, Mesh};
 
 /// Elements judged in one go by one thread.
@@ -54,21 +55,6 @@ pub struct Tally {
     pub undecided: usize,
     /// Those whose `J_c` is not positive: the linear element is itself invalid.
     pub without_reference: usize,
-}
-
-/// A finding with its element and place.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Judged {
-    /// The element.
-    pub element: ElementId,
-    /// Its kind.
-    pub cell: Cell,
-    /// Its order.
-    pub order: Order,
-    /// What was found.
-    pub finding: Finding,
-    /// Where its smallest known determinant is attained (relative to `J_c` where that is positive).
-    pub place: DVec3,
 }
 
 impl Certificate {

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::certificate::Judged;
+use super::judged::Judged;
 use super::{Bounds, Finding, Judge, Settings, Shape};
 use crate::mesh::ElementId;
 

@@ -14,6 +14,7 @@ mod elements;
 mod face;
 mod form;
 mod judge;
+mod judged;
 #[cfg(test)]
 mod layer_tests;
 #[cfg(test)]
@@ -40,11 +41,12 @@ mod straight;
 mod tests;
 mod verdict;
 
-pub use certificate::{Certificate, Judged, Tally, certify, mesh};
+pub use certificate::{Certificate, Tally, certify, mesh};
 pub use check::{NotCertifiable, check};
 pub use elements::{Buffer, Elements, MeshElements};
 pub use face::{FaceFinding, WallFace, Walls, walls};
 pub use judge::{Judge, Shape};
+pub use judged::Judged;
 pub use verdict::{Bounds, Finding, Method, Verdict};
 
 /// When the certificate stops to subdivide.

@@ -17,6 +17,7 @@ mod node_order;
 mod numbers;
 mod output;
 mod plot3d;
+mod recognise;
 mod registry;
 mod scanner;
 mod su2;
@@ -26,8 +27,8 @@ mod vtk;
 
 use std::path::{Path, PathBuf};
 
-use detect::detect;
 use format::Input;
+use recognise::detect;
 
 pub use error::{Error, Fault, Flaw, Place};
 pub use field::{Field, Support, Values};

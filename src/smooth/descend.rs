@@ -11,7 +11,7 @@ use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use super::block::positive_inverse;
-use super::kernel::NodeDerivative;
+use super::derivative::NodeDerivative;
 use super::objective::Objective;
 use super::{Constraint, Freedom};
 

@@ -1,22 +1,12 @@
 //! One element's contribution to the objective, and to its gradient and Hessian blocks by each of its nodes.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 use super::density::Density;
+use super::derivative::NodeDerivative;
 use super::survey::{Scratch, Survey};
 use crate::element::{Cell, Order, corner_tets};
 use crate::quality::{Cut, corner_frame};
-
-/// Gradient and Hessian block of the objective by one node.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct NodeDerivative {
-    pub(super) gradient: DVec3,
-    pub(super) hessian: DMat3,
-}
-
-impl NodeDerivative {
-    pub(super) const ZERO: NodeDerivative = NodeDerivative { gradient: DVec3::ZERO, hessian: DMat3::ZERO };
-}
 
 /// Weights of the two components of equation (2), and how their samples count.
 #[derive(Clone, Copy, Debug, PartialEq)]

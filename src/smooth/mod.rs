@@ -5,6 +5,7 @@ mod block;
 mod checkpoint;
 mod confirm;
 mod density;
+mod derivative;
 mod descend;
 mod engine;
 mod gradient;

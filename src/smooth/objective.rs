@@ -8,7 +8,8 @@ use rayon::prelude::*;
 
 use super::Anchor;
 use super::density::Density;
-use super::kernel::{Element, Kernel, NodeDerivative, Weights};
+use super::derivative::NodeDerivative;
+use super::kernel::{Element, Kernel, Weights};
 use super::patch::{Patch, Run};
 use super::survey::Scratch;
 use crate::quality::Cut;

@@ -8,7 +8,7 @@ use glam::{DMat3, DVec3};
 use pulp::{Arch, Simd, WithSimd};
 
 use super::density::Density;
-use super::kernel::NodeDerivative;
+use super::derivative::NodeDerivative;
 use crate::element::samples::LANES;
 use crate::element::{Cell, Order, Samples};
 

@@ -17,19 +17,8 @@ use graph::{Graph, circles, ranks};
 use imports::{Import, imports};
 use source::{Modules, Name};
 
-/// Circles of files that are known: folder and members. None is allowed between the modules of a crate.
-const KNOWN: &[(&str, &[&str])] = &[
-    // runs of patches stand beside the model that is put together from them
-    ("src/associate/document", &["geometry", "model"]),
-    // a judged element is what both sort
-    ("src/certify", &["certificate", "contest"]),
-    // a format's entry names its detection's answer; detection asks the registry, which knows all formats
-    ("src/formats", &["cgns", "detect", "format", "msh", "plot3d", "registry", "su2", "ugrid", "vtk"]),
-    // a zone as it is read
-    ("src/formats/cgns", &["conditions", "connections", "read"]),
-    // a node's derivative stands beside the kernel
-    ("src/smooth", &["kernel", "survey"]),
-];
+/// Circles of files that are known, by folder and members: none is left.
+const KNOWN: &[(&str, &[&str])] = &[];
 
 /// Folders whose own file defines what its parts take, and uses these parts.
 const OWN_FILES: &[&str] = &[

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use cad::EntityId;
 use linkage_schema::{GeometryGroup, GeometryId, GeometryReference, Origin};
 
-use super::model::{patches, union};
+use super::patches::{patches, union};
 use crate::associate::Candidates;
 use crate::mesh::{Boundary, Mesh};
 

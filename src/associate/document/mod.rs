@@ -2,6 +2,7 @@
 
 mod geometry;
 mod model;
+mod patches;
 mod periodic;
 
 use std::path::Path;

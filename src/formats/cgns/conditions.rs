@@ -5,10 +5,10 @@ use std::collections::{BTreeMap, HashSet};
 use rustc_hash::FxHashMap;
 
 use super::labels;
-use super::read::Zone;
 use super::sections::Section;
 use super::skin;
 use super::tree::{Ints, Tree};
+use super::zone::Zone;
 use crate::element::Cell;
 use crate::formats::assembly::Assembly;
 use crate::formats::error::Flaw;

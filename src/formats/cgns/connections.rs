@@ -4,8 +4,8 @@ use rustc_hash::FxHashMap;
 
 use super::fault::CgnsFault;
 use super::labels;
-use super::read::Zone;
 use super::tree::Tree;
+use super::zone::Zone;
 use crate::formats::error::Flaw;
 
 /// For each point of all zones, one after the other, the first point that it is one with.

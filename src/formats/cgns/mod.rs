@@ -17,6 +17,7 @@ mod skin;
 mod tree;
 mod type_code;
 mod write;
+mod zone;
 
 use super::detect::{Head, Refusal, Verdict};
 use super::format::{Format, Holds, Input, Reader, Writer};

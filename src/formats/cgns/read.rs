@@ -6,27 +6,12 @@ use super::conditions::{Conditions, Families};
 use super::connections::{self, Joined};
 use super::fault::CgnsFault;
 use super::labels;
-use super::sections::{Section, sections};
+use super::sections::sections;
 use super::tree::Tree;
+use super::zone::Zone;
 use crate::formats::assembly::{Assembly, node_of};
-use crate::formats::error::{Fault, Flaw};
+use crate::formats::error::Flaw;
 use crate::mesh::{Mesh, NodeId};
-
-/// A zone and its place among all.
-pub(super) struct Zone<'a> {
-    pub(super) tree: &'a Tree<'a>,
-    /// Points of the zones before it.
-    pub(super) start: usize,
-    pub(super) points: Vec<DVec3>,
-    pub(super) sections: Vec<Section<'a>>,
-}
-
-impl Zone<'_> {
-    /// The place among the points of all zones of the zone's own point number.
-    pub(super) fn point(&self, number: i64) -> Result<usize, Fault> {
-        Ok(self.start + node_of(self.points.len(), number, 1, 0)?.index())
-    }
-}
 
 /// The mesh of the first base.
 pub(super) fn mesh(tree: &Tree) -> Result<Mesh, Flaw> {
