@@ -273,6 +273,21 @@ fn what_is_no_mesh_file_is_told() {
     assert!(refused("empty.msh", b"").contains("the file is empty"));
     assert!(refused("part.msh", b"ISO-10303-21;\nHEADER;").contains("CAD, not a mesh"));
     assert!(refused("grid.xml", b"<grid/>").contains("an XML file, but not a VTU mesh"));
+    for (name, content, told) in [
+        ("fluent.msh", &b"(0 \"GAMBIT to Fluent File\")\n(2 3)\n"[..], "a Fluent mesh, which is not read; export"),
+        ("deck.nas", b"$ a comment\nBEGIN BULK\nGRID,1,,0.,0.,0.\n", "a Nastran bulk data file, which is not read"),
+        ("deck.inp", b"** a comment\n*HEADING\n mesh\n", "an Abaqus input file, which is not read"),
+        ("grid.vol", b"mesh3d\ndimension\n3\n", "a Netgen mesh, which is not read"),
+        ("grid.exo", b"CDF\x01\0\0\0\0", "a netCDF file, as Exodus meshes are, which is not read"),
+        ("grid.dat", b"TITLE = \"x\"\nVARIABLES = \"X\"\n", "a Tecplot file, which is not read"),
+        ("grid.neu", b"        CONTROL INFO 2.4.6\n", "a Gambit neutral file, which is not read"),
+        ("grid.xdmf", b"<?xml version=\"1.0\"?><Xdmf Version=\"3.0\">", "an XDMF file, which is not read"),
+        ("points", b"FoamFile\n{\n}\n", "a file of an OpenFOAM case, which is not read"),
+        ("grid.mesh", b"MFEM mesh v1.0\n", "an MFEM mesh, which is not read"),
+    ] {
+        let found = refused(name, content);
+        assert!(found.contains(told), "{found}");
+    }
     assert!(refused("noise.msh", &[0xff; 100]).contains("not a mesh file of a known format"));
     assert!(
         refused("old.msh", b"$MeshFormat\n4 0 8\n$EndMeshFormat\n")
@@ -293,8 +308,8 @@ fn what_cannot_be_written_is_told_and_leaves_no_file() {
         told
     };
     let plain = WriteOptions::default();
-    assert!(refused("mesh.stl", &plain).contains("name it .msh, .cgns or .vtu"));
-    assert!(refused("mesh", &plain).contains("name it .msh, .cgns or .vtu"));
+    assert!(refused("mesh.stl", &plain).contains("name it .msh, .cgns, .meshb, .mesh or .vtu"));
+    assert!(refused("mesh", &plain).contains("name it .msh, .cgns, .meshb, .mesh or .vtu"));
     assert!(refused("none/mesh.msh", &plain).contains("cannot create: No such file"));
     let short = Field { name: "short".into(), support: Support::Elements, values: Values::Integer(vec![1, 2]) };
     let options = WriteOptions { fields: &[short], ..plain };

@@ -1,6 +1,7 @@
 //! Options of commands that write a mesh: how it is written.
 
-use clap::Args;
+use clap::builder::PossibleValue;
+use clap::{Args, ValueEnum};
 
 use crate::formats::{self, Field, WriteOptions, msh};
 
@@ -21,7 +22,7 @@ pub(super) struct Form {
     #[arg(long)]
     volume_only: bool,
     /// Version of the MSH file
-    #[arg(long, value_name = "4.1|2.2", default_value = "4.1", value_parser = msh_version)]
+    #[arg(long, value_name = "VERSION", value_enum, default_value_t)]
     msh_version: msh::Version,
     /// MSH: write text rather than binary
     #[arg(long)]
@@ -40,10 +41,12 @@ impl Form {
     }
 }
 
-fn msh_version(text: &str) -> Result<msh::Version, String> {
-    match text {
-        "4.1" => Ok(msh::Version::V4_1),
-        "2.2" => Ok(msh::Version::V2_2),
-        _ => Err(format!("{text:?} is no version that is written: give 4.1 or 2.2")),
+impl ValueEnum for msh::Version {
+    fn value_variants<'a>() -> &'a [msh::Version] {
+        &msh::Version::ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.name()))
     }
 }

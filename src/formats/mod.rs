@@ -10,6 +10,7 @@ pub mod cgns;
 mod detect;
 mod error;
 mod field;
+mod foreign;
 mod format;
 mod gmf;
 pub mod msh;

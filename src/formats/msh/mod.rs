@@ -42,7 +42,11 @@ pub use type_code::of as element_type;
 pub(super) static FORMAT: Format = Format {
     name: "Gmsh MSH",
     endings: &["msh"],
-    detect: |head| if head.text.starts_with(b"$") { Verdict::ByContent } else { Verdict::No },
+    // Nastran's comments begin with a dollar too.
+    detect: |head| match head.text {
+        [b'$', b'A'..=b'Z', ..] => Verdict::ByContent,
+        _ => Verdict::No,
+    },
     reader: Reader {
         holds: Holds { notes: "4.1 and 2.2, text and binary", ..HOLDS },
         read: |input, _| read(input.content, input.length).map_err(|flaw| flaw.of(input.path)),
@@ -64,6 +68,20 @@ pub enum Version {
     V4_1,
     /// 2.2: what older readers take; keeps no boundaries of entities and no node parameters.
     V2_2,
+}
+
+impl Version {
+    /// All versions that are written.
+    pub const ALL: [Version; 2] = [Version::V4_1, Version::V2_2];
+
+    /// What a file of the version says of itself.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Version::V4_1 => "4.1",
+            Version::V2_2 => "2.2",
+        }
+    }
 }
 
 /// How numbers are written.
@@ -230,9 +248,8 @@ fn end_section(scanner: &mut Scanner<impl BufRead>, section: &'static str) -> Re
 
 /// Writes a mesh. Equal meshes make equal bytes.
 fn write(out: &mut (impl Write + Send), mesh: &Mesh, version: Version, encoding: Encoding) -> Result<(), Unwritten> {
-    let number = if version == Version::V4_1 { "4.1" } else { "2.2" };
     let binary = encoding == Encoding::Binary;
-    write!(out, "$MeshFormat\n{number} {} 8\n", u8::from(binary))?;
+    write!(out, "$MeshFormat\n{} {} 8\n", version.name(), u8::from(binary))?;
     if binary {
         out.write_all(&1_i32.to_le_bytes())?;
         out.write_all(b"\n")?;
