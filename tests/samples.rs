@@ -43,7 +43,7 @@ fn files() -> Vec<PathBuf> {
     if let Some(more) = std::env::var_os("SAGITTA_SAMPLES").map(PathBuf::from) {
         folders.extend([more.clone(), more.join("single"), more.join("single_cgns")]);
     }
-    let known = ["msh", "cgns", "su2", "vtk", "vtu", "ugrid", "unv"];
+    let known = ["msh", "cgns", "su2", "vtk", "vtu", "ugrid", "unv", "mesh", "meshb"];
     let mut files: Vec<PathBuf> = folders
         .iter()
         .filter_map(|folder| std::fs::read_dir(folder).ok())

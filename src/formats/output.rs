@@ -3,7 +3,7 @@
 use std::fs::{self, File, Permissions};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::os::unix::fs::PermissionsExt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
@@ -29,7 +29,7 @@ pub(super) fn write(path: &Path, content: impl FnOnce(&mut Part) -> Result<(), U
     if replaced.as_ref().is_some_and(|metadata| !metadata.is_file()) {
         return Err(failed("write")(io::Error::other("it exists and is not a regular file")));
     }
-    let mut part = Part::create(&target, replaced.map(|old| old.permissions())).map_err(failed("create"))?;
+    let mut part = Part::create(path, &target, replaced.map(|old| old.permissions())).map_err(failed("create"))?;
     content(&mut part).map_err(|unwritten| match unwritten {
         Unwritten::Io(source) => failed("write")(source),
         Unwritten::Inexpressible(reason) => Error::Inexpressible { file: path.to_path_buf(), reason },
@@ -58,27 +58,36 @@ impl From<io::Error> for Unwritten {
 }
 
 /// The file under its temporary name; removed when dropped before it got its own.
-pub(super) struct Part(NamedTempFile);
+pub(super) struct Part {
+    file: NamedTempFile,
+    /// The name that it will have, as it was asked for.
+    name: PathBuf,
+}
 
 impl Part {
     /// A new file that no link leads elsewhere: its name is taken by nothing.
-    fn create(target: &Path, mode: Option<Permissions>) -> io::Result<Part> {
+    fn create(name: &Path, target: &Path, mode: Option<Permissions>) -> io::Result<Part> {
         if target.file_name().is_none() {
             return Err(io::Error::other("the path names no file"));
         }
         let mut builder = tempfile::Builder::new();
         builder.prefix(".sagitta-").suffix(".part").permissions(Permissions::from_mode(MODE));
-        let part = builder.tempfile_in(folder(target))?;
+        let file = builder.tempfile_in(folder(target))?;
         if let Some(mode) = mode {
-            part.as_file().set_permissions(mode)?;
+            file.as_file().set_permissions(mode)?;
         }
-        Ok(Part(part))
+        Ok(Part { file, name: name.to_path_buf() })
+    }
+
+    /// Whether its name will have this ending, for a format that has several.
+    pub(super) fn is_named(&self, ending: &str) -> bool {
+        self.name.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending))
     }
 
     /// The temporary name, for a library that opens files itself.
     #[cfg(feature = "cgns")]
     pub(super) fn path(&self) -> &Path {
-        self.0.path()
+        self.file.path()
     }
 
     /// Hands the file out to be written to.
@@ -89,15 +98,15 @@ impl Part {
         &mut self,
         content: impl FnOnce(&mut BufWriter<&mut File>) -> Result<(), Unwritten>,
     ) -> Result<(), Unwritten> {
-        let mut out = BufWriter::with_capacity(BUFFER, self.0.as_file_mut());
+        let mut out = BufWriter::with_capacity(BUFFER, self.file.as_file_mut());
         content(&mut out)?;
         Ok(out.flush()?)
     }
 
     /// Gives the file its name, once it is on disk.
     fn complete(self, target: &Path) -> io::Result<()> {
-        self.0.as_file().sync_all()?;
-        self.0.persist(target).map_err(|refused| refused.error)?;
+        self.file.as_file().sync_all()?;
+        self.file.persist(target).map_err(|refused| refused.error)?;
         match File::open(folder(target)).and_then(|folder| folder.sync_all()) {
             // Some file systems cannot, and some folders may not be read; the file has its name all the same.
             Err(error)

@@ -13,12 +13,11 @@ pub static REGISTRY: &[&Format] = &[
     &msh::FORMAT,
     #[cfg(feature = "cgns")]
     &cgns::FORMAT,
+    &gmf::FORMAT,
     &ugrid::FORMAT,
     &su2::FORMAT,
     &vtk::VTU,
     &vtk::LEGACY,
-    &gmf::BINARY,
-    &gmf::TEXT,
     &plot3d::FORMAT,
 ];
 

@@ -3,7 +3,7 @@
 
 usage: figures.py FOLDER... > fixtures/samples/figures.json
 
-Each file goes to Gmsh (MSH, CGNS), meshio (UGRID, SU2) and VTK (VTK, VTU, CGNS), in this order, until one reads it; the answer names the program. Patches are told
+Each file goes to Gmsh (MSH, CGNS, GMF of order 2), meshio (UGRID, SU2, GMF) and VTK (VTK, VTU, CGNS), in this order, until one reads it; the answer names the program. Patches are told
 by physical name where the program gives names ("name"), else by number ("tag"). A file that none reads has their reasons.
 """
 import json
@@ -32,7 +32,9 @@ VTK_SHAPES = {1: "point", 3: "line", 5: "triangle", 9: "quad", 10: "tet", 12: "h
 def with_gmsh(path):
     import gmsh
 
-    if not path.endswith((".msh", ".cgns")):
+    # Of GMF it reads tets alone, and meshio the linear ones.
+    quadratic = path.endswith(".mesh") and "TetrahedraP2" in open(path).read()
+    if not path.endswith((".msh", ".cgns")) and not quadratic:
         raise ValueError("not asked")  # it has no reader of the others, or reads its own VTK files wrongly
     if not gmsh.isInitialized():
         gmsh.initialize()
@@ -104,11 +106,13 @@ def volume_of(points, shape, corners):
 def with_meshio(path):
     import meshio
 
-    if not path.endswith((".ugrid", ".su2")):
+    references = {"ugrid": "ugrid:ref", "su2": "su2:tag", "mesh": "medit:ref", "meshb": "medit:ref"}
+    ending = path.rsplit(".", 1)[-1]
+    if ending not in references:
         raise ValueError("not asked")
     mesh = meshio.read(path)
     points = np.pad(mesh.points, ((0, 0), (0, 3 - mesh.points.shape[1])))
-    refs = mesh.cell_data["ugrid:ref" if path.endswith(".ugrid") else "su2:tag"]
+    refs = mesh.cell_data[references[ending]]
     cells, volume, areas = {}, 0.0, {}
     for n, block in enumerate(mesh.cells):
         shape = MESHIO_SHAPES[block.type]
@@ -198,7 +202,7 @@ def main():
     for folder in sys.argv[1:]:
         for name in sorted(os.listdir(folder)):
             path = os.path.join(folder, name)
-            if name.rsplit(".", 1)[-1] in ("msh", "cgns", "su2", "vtk", "vtu", "ugrid", "unv"):
+            if name.rsplit(".", 1)[-1] in ("msh", "cgns", "su2", "vtk", "vtu", "ugrid", "unv", "mesh", "meshb"):
                 found[name] = figures(path)
     json.dump(found, sys.stdout, indent=1, sort_keys=True)
     print()

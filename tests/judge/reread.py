@@ -16,7 +16,7 @@ PRISMS_WITHOUT_FUNCTIONS = (90, 91)  # Gmsh cannot evaluate prisms of order 3 an
 def with_gmsh(path):
     import gmsh
 
-    if not path.endswith(".msh"):
+    if not path.endswith((".msh", ".mesh")):
         return {"error": "not a format of Gmsh's"}
     if not gmsh.isInitialized():
         gmsh.initialize()

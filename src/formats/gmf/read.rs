@@ -1,220 +1,246 @@
-//! Reading.
+//! A mesh from the keywords of a GMF file.
 
-use std::collections::BTreeMap;
+use std::io::BufRead;
 
 use glam::DVec3;
 
+use super::association::{self, OnGeometry};
 use super::fault::GmfFault;
 use super::keyword::Keyword;
-use super::node_order::{coordinates, slots};
+use super::node_order;
 use super::source::Source;
 use crate::element::{Cell, Order};
-use crate::formats::ReadOptions;
 use crate::formats::assembly::{Assembly, node_of};
-use crate::formats::error::{Error, Fault, Flaw};
-use crate::formats::format::Input;
+use crate::formats::error::{Fault, Flaw};
 use crate::mesh::{EntityKey, Mesh, NodeId};
 
-/// Reads a mesh file.
-pub(super) fn open(input: Input, _: &ReadOptions) -> Result<Mesh, Error> {
-    let path = input.path;
-    let content = input.whole()?;
-    read(&content).map_err(|flaw| flaw.of(path))
+/// The mesh of a file.
+pub(super) fn mesh(mut source: Source<impl BufRead>) -> Result<Mesh, Flaw> {
+    let mut draft = Draft::default();
+    while let Some(keyword) = source.keyword()? {
+        draft.section(&mut source, keyword)?;
+    }
+    draft.mesh().map_err(|fault| source.flaw(fault))
 }
 
 /// What has been read so far.
 #[derive(Default)]
-struct File {
-    dimension: usize,
+struct Draft {
+    dimension: Option<usize>,
     points: Option<Vec<DVec3>>,
-    /// Elements by cell and order, in file order: nodes as the file numbers them, and the reference.
-    elements: Vec<(Cell, Order, Vec<i64>)>,
-    orderings: BTreeMap<(Cell, Order), Vec<Vec<i64>>>,
-    /// Vertex, dimension and number of the geometric entity, parameters.
-    classes: Vec<(i64, EntityKey, Option<[f64; 2]>)>,
-    skipped: Vec<String>,
+    elements: Vec<Elements>,
+    /// For each slot of an element in the file, the node of the internal order that it holds.
+    orderings: Vec<(Cell, Order, Vec<u8>)>,
+    on_geometry: Vec<OnGeometry>,
+    corners: Vec<NodeId>,
+    /// Whether the vertices are control points.
+    bezier: bool,
+    /// Keywords of no use, and how many rows they have.
+    unused: Vec<(&'static str, usize)>,
 }
 
-/// Reads a mesh from a file's content.
-///
-/// # Errors
-/// The first [`Fault`] and its place. Memory stays within a small multiple of the content's length.
-fn read(content: &[u8]) -> Result<Mesh, Flaw> {
-    let mut source = Source::new(content)?;
-    let mut file = File::default();
-    while let Some(keyword) = source.keyword()? {
-        match keyword {
-            Ok(Keyword::End) => break,
-            Ok(keyword) => file.take(keyword, &mut source)?,
-            Err(name) if file.skipped.contains(&name) => {}
-            Err(name) => file.skipped.push(name),
-        }
-    }
-    file.mesh().map_err(|fault| source.flaw(fault))
+/// Elements of one keyword.
+struct Elements {
+    cell: Cell,
+    order: Order,
+    /// Nodes in the order of the file.
+    nodes: Vec<NodeId>,
+    references: Vec<i32>,
 }
 
-impl File {
-    /// Reads the lines of a keyword.
-    fn take(&mut self, keyword: Keyword, source: &mut Source) -> Result<(), Flaw> {
+impl Draft {
+    fn section(&mut self, source: &mut Source<impl BufRead>, keyword: Keyword) -> Result<(), Flaw> {
         match keyword {
             Keyword::Dimension => {
                 let dimension = source.dimension()?;
-                self.dimension = match dimension {
-                    2 | 3 => dimension as usize,
-                    other => return Err(source.flaw(GmfFault::Dimension(other))),
-                };
+                if !matches!(dimension, 2 | 3) {
+                    return Err(source.flaw(GmfFault::Dimension(dimension)));
+                }
+                self.dimension = Some(dimension as usize);
             }
             Keyword::Vertices => self.vertices(source)?,
-            Keyword::Elements(cell, order) => self.elements(cell, order, source)?,
-            Keyword::Ordering(cell, order) => {
-                let width = coordinates(cell, order)[0].len();
-                let count = source.count("nodes of an ordering", width as u64, 0)?;
-                let mut row = || (0..width).map(|_| source.int("a node's coordinate")).collect::<Result<Vec<_>, _>>();
-                let rows = (0..count).map(|_| row()).collect::<Result<Vec<_>, _>>()?;
-                self.orderings.insert((cell, order), rows);
+            Keyword::Elements(cell, order) => self.elements(source, cell, order)?,
+            Keyword::Ordering(cell, order) => self.ordering(source, cell, order)?,
+            Keyword::OnGeometry(dimension) => self.on_geometry(source, dimension)?,
+            Keyword::Corners => {
+                for row in 1..=source.count("Corners", 1, 0)? {
+                    let corner = self.vertex(source, row as u64)?;
+                    self.corners.push(corner);
+                }
             }
-            Keyword::OnGeometry(dimension) => self.on_geometry(dimension, source)?,
+            Keyword::BezierBasis => self.bezier = source.int("BezierBasis")? != 0,
+            Keyword::Precision => {
+                let bits = source.int("FloatingPointPrecision")?;
+                source.set_precision(bits)?;
+            }
+            Keyword::Unused(word) => {
+                self.unused.push((word, source.count(word, 1, 0)?));
+                source.pass_over();
+            }
+            Keyword::Refused(word) => return Err(source.flaw(GmfFault::Elements(word))),
             Keyword::End => {}
         }
         Ok(())
     }
 
-    fn vertices(&mut self, source: &mut Source) -> Result<(), Flaw> {
-        if self.dimension == 0 {
-            return Err(source.flaw(GmfFault::NoDimension(Keyword::Vertices.name())));
-        }
+    fn vertices(&mut self, source: &mut Source<impl BufRead>) -> Result<(), Flaw> {
         if self.points.is_some() {
-            return Err(source.flaw(GmfFault::TwoVertices));
+            return Err(source.flaw(GmfFault::Repeated("Vertices")));
         }
-        let count = source.count("vertices", 1, self.dimension as u64)?;
+        let later = || "Vertices".to_owned();
+        let dimension = self.dimension.ok_or_else(|| GmfFault::Order { earlier: "Dimension", later: later() });
+        let dimension = dimension.map_err(|fault| source.flaw(fault))?;
+        let count = source.count("Vertices", 1, dimension as u64)?;
+        NodeId::new(count).map_err(|cause| source.flaw(cause))?;
         let mut points = Vec::with_capacity(count);
         for _ in 0..count {
-            let mut x = [0.0; 3];
-            for x in &mut x[..self.dimension] {
-                *x = source.real("a vertex's coordinates")?;
+            let mut point = [0.0; 3];
+            for x in &mut point[..dimension] {
+                *x = source.real("a vertex' coordinates")?;
             }
-            source.int("a vertex's reference")?;
-            points.push(DVec3::from_array(x));
+            source.int("a vertex' reference")?;
+            points.push(DVec3::from_array(point));
         }
         self.points = Some(points);
         Ok(())
     }
 
-    fn elements(&mut self, cell: Cell, order: Order, source: &mut Source) -> Result<(), Flaw> {
-        let width = cell.node_count(order) + 1;
-        let count = source.count("elements", width as u64, 0)?;
-        let mut numbers = Vec::with_capacity(count * width);
-        for _ in 0..count * width {
-            numbers.push(source.int("an element's nodes and reference")?);
+    /// A vertex by its number, which `by` (a row) refers to.
+    fn vertex(&self, source: &mut Source<impl BufRead>, by: u64) -> Result<NodeId, Flaw> {
+        let number = source.int("a vertex' number")?;
+        let count = self.points.as_ref().map_or(0, Vec::len);
+        node_of(count, number, 1, by).map_err(|fault| source.flaw(fault))
+    }
+
+    /// Refuses what refers to vertices before there are any.
+    fn after_vertices(&self, source: &Source<impl BufRead>, keyword: Keyword) -> Result<(), Flaw> {
+        match self.points {
+            Some(_) => Ok(()),
+            None => Err(source.flaw(GmfFault::Order { earlier: "Vertices", later: keyword.names().1 })),
         }
-        self.elements.push((cell, order, numbers));
+    }
+
+    fn elements(&mut self, source: &mut Source<impl BufRead>, cell: Cell, order: Order) -> Result<(), Flaw> {
+        self.after_vertices(source, Keyword::Elements(cell, order))?;
+        let stride = cell.node_count(order);
+        let count = source.count("elements", stride as u64 + 1, 0)?;
+        let mut elements = Elements { cell, order, nodes: Vec::new(), references: Vec::new() };
+        elements.nodes.reserve_exact(count * stride);
+        elements.references.reserve_exact(count);
+        for row in 1..=count as u64 {
+            for _ in 0..stride {
+                elements.nodes.push(self.vertex(source, row)?);
+            }
+            let reference = source.int("an element's reference")?;
+            let reference = i32::try_from(reference).map_err(|_| source.flaw(GmfFault::Reference(reference)))?;
+            elements.references.push(reference);
+        }
+        self.elements.push(elements);
         Ok(())
     }
 
-    /// Vertices on geometric entities: a curve has one parameter, a surface two, and both the distance of the vertex from it.
-    fn on_geometry(&mut self, dimension: u8, source: &mut Source) -> Result<(), Flaw> {
-        let reals = if dimension == 0 { 0 } else { u64::from(dimension) + 1 };
-        let count = source.count("vertices on geometry", 2, reals)?;
-        for _ in 0..count {
-            let (vertex, entity) = (source.int("a vertex on geometry")?, source.int("a geometric entity")?);
+    fn ordering(&mut self, source: &mut Source<impl BufRead>, cell: Cell, order: Order) -> Result<(), Flaw> {
+        let indices = node_order::indices(cell);
+        let count = source.count("nodes of an order", indices as u64, 0)?;
+        let mut rows = Vec::with_capacity(count * indices);
+        for _ in 0..count * indices {
+            rows.push(source.int("a node's indices")?);
+        }
+        let wrong = || {
+            let (word, nodes) = (Keyword::Ordering(cell, order).names().1, cell.node_count(order));
+            source.flaw(GmfFault::Ordering(word, nodes))
+        };
+        let slots = node_order::slots(cell, order, &rows).ok_or_else(wrong)?;
+        self.orderings.push((cell, order, slots));
+        Ok(())
+    }
+
+    fn on_geometry(&mut self, source: &mut Source<impl BufRead>, dimension: u8) -> Result<(), Flaw> {
+        self.after_vertices(source, Keyword::OnGeometry(dimension))?;
+        let axes = usize::from(dimension);
+        // Behind the parameters stands a distance.
+        let reals = if dimension == 0 { 0 } else { axes as u64 + 1 };
+        for row in 1..=source.count("VerticesOnGeometric*", 2, reals)? {
+            let node = self.vertex(source, row as u64)?;
+            let tag = source.int("a geometric entity")?;
             let mut parameters = [0.0; 2];
-            for t in &mut parameters[..usize::from(dimension)] {
-                *t = source.real("a parameter")?;
+            for value in &mut parameters[..axes] {
+                *value = source.real("a vertex' parameters")?;
             }
             if dimension > 0 {
-                source.real("a vertex's distance")?;
+                source.real("a vertex' distance")?;
             }
-            let tag = i32::try_from(entity)
-                .map_err(|_| source.flaw(Fault::Number { what: "a geometric entity", found: entity.to_string() }))?;
-            let known = (dimension > 0).then_some(parameters).filter(|[u, v]| u.is_finite() && v.is_finite());
-            self.classes.push((vertex, EntityKey::new(dimension, tag), known));
+            if !parameters.iter().all(|x| x.is_finite()) {
+                return Err(source.flaw(Fault::NotFinite(node.index() as u64 + 1)));
+            }
+            let tag = i32::try_from(tag).map_err(|_| source.flaw(GmfFault::Reference(tag)))?;
+            // 0 is none, as for elements.
+            if tag > 0 {
+                self.on_geometry.push(OnGeometry { node, entity: EntityKey::new(dimension, tag), parameters });
+            }
         }
         Ok(())
     }
 
     fn mesh(self) -> Result<Mesh, Fault> {
-        let File { points, elements, orderings, classes, skipped, .. } = self;
-        let points = points.ok_or(GmfFault::NoVertices)?;
-        let nodes = points.len();
+        let points = self.points.ok_or(GmfFault::Missing("Vertices"))?;
         let mut assembly = Assembly::new(points)?;
-        let mut notes = Vec::new();
-        let mut number = 0;
-        for (cell, order, numbers) in elements.into_iter().filter(|(.., numbers)| !numbers.is_empty()) {
+        let tags = Tags::new(&self.elements);
+        let mut assumed = false;
+        let mut nodes = Vec::new();
+        for Elements { cell, order, nodes: all, references } in self.elements {
+            if references.is_empty() {
+                continue;
+            }
             assembly.set_order(cell, order)?;
-            let slots = match orderings.get(&(cell, order)) {
-                Some(given) => slots(cell, order, given).ok_or(GmfFault::Ordering { cell, order })?,
-                None => (0..cell.node_count(order)).collect(),
-            };
-            if order > Order::LINEAR && !orderings.contains_key(&(cell, order)) {
-                notes.push(format!(
-                    "{} has no ordering: its nodes were taken as corners, edges, faces and inside, in the order of CGNS",
-                    Keyword::Elements(cell, order).name()
-                ));
-            }
-            let entities = Entities::new(cell, numbers.chunks_exact(slots.len() + 1).map(|line| line[slots.len()]))?;
-            let mut own = vec![NodeId::default(); slots.len()];
-            for line in numbers.chunks_exact(slots.len() + 1) {
-                number += 1;
-                for (&slot, &node) in slots.iter().zip(line) {
-                    own[slot] = node_of(nodes, node, 1, number)?;
+            let given = self.orderings.iter().find(|(c, o, _)| (*c, *o) == (cell, order)).map(|(.., slots)| &slots[..]);
+            // Of order 2 there is but one in use.
+            assumed |= given.is_none() && order.get() > 2;
+            for (own, &reference) in all.chunks_exact(cell.node_count(order)).zip(&references) {
+                nodes.clear();
+                nodes.extend_from_slice(own);
+                for (&slot, &node) in given.unwrap_or_default().iter().zip(own) {
+                    nodes[usize::from(slot)] = node;
                 }
-                assembly.push(cell, entities.of(line[slots.len()]), &own);
+                assembly.push(cell, tags.entity(cell, reference), &nodes);
             }
         }
-        classify(&mut assembly, nodes, &classes)?;
-        if !skipped.is_empty() {
-            notes.push(format!("not read: {}", skipped.join(", ")));
+        if self.bezier && assembly.parts.order > Order::LINEAR {
+            return Err(GmfFault::Bezier.into());
         }
-        assembly.parts.notes.extend(notes);
+        if assumed {
+            let note =
+                "no ...Ordering keyword says how nodes of elements are ordered; taken as in CGNS (not as in Gmsh)";
+            assembly.parts.notes.push(note.into());
+        }
+        for (word, count) in self.unused.iter().filter(|(_, count)| *count > 0) {
+            assembly.parts.notes.push(format!("{count} {word} are not used"));
+        }
+        association::apply(&mut assembly, self.on_geometry, &self.corners);
         assembly.finish()
     }
 }
 
-/// Entities of references.
-struct Entities {
-    dimension: u8,
-    /// What is added to references below 1, so that tags are positive and unlike the others.
-    shift: i64,
+/// Tags of entities: the references of elements. One that is not positive, which says that there is none, becomes the
+/// next free tag.
+struct Tags {
+    /// Free tags, by dimension.
+    free: [i32; 4],
 }
 
-impl Entities {
-    fn new(cell: Cell, references: impl Iterator<Item = i64>) -> Result<Entities, Fault> {
-        let (least, most) = references.fold((1, 0), |(least, most), own| (own.min(least), own.max(most)));
-        let shift = most - least + 1;
-        let largest = i32::try_from(most.max(if least < 1 { shift } else { 0 }));
-        let found = || Fault::Number { what: "an element's reference", found: most.to_string() };
-        largest.map_err(|_| found())?;
-        Ok(Entities { dimension: cell.dimension() as u8, shift })
+impl Tags {
+    fn new(elements: &[Elements]) -> Tags {
+        let mut free = [1; 4];
+        for own in elements {
+            let free = &mut free[own.cell.dimension()];
+            let largest = own.references.iter().copied().max().unwrap_or(0);
+            *free = largest.saturating_add(1).max(*free);
+        }
+        Tags { free }
     }
 
-    /// A reference below 1 comes behind the others.
-    fn of(&self, reference: i64) -> EntityKey {
-        let tag = if reference < 1 { reference + self.shift } else { reference };
-        EntityKey::new(self.dimension, tag as i32)
+    fn entity(&self, cell: Cell, reference: i32) -> EntityKey {
+        let tag = if reference > 0 { reference } else { self.free[cell.dimension()] };
+        EntityKey::new(cell.dimension() as u8, tag)
     }
-}
-
-/// Says on which geometry nodes lie: the lowest entity counts, with its parameters.
-fn classify(
-    assembly: &mut Assembly,
-    nodes: usize,
-    classes: &[(i64, EntityKey, Option<[f64; 2]>)],
-) -> Result<(), Fault> {
-    if classes.is_empty() {
-        return Ok(());
-    }
-    let mut known: Vec<Option<(EntityKey, Option<[f64; 2]>)>> = vec![None; nodes];
-    for (line, &(vertex, key, parameters)) in (1..).zip(classes) {
-        let own = &mut known[node_of(nodes, vertex, 1, line)?.index()];
-        if own.is_none_or(|(other, _)| key.dimension < other.dimension) {
-            *own = Some((key, parameters));
-        }
-    }
-    assembly.parts.node_entities = known.iter().map(|own| own.map(|(key, _)| key)).collect();
-    for (n, own) in known.iter().enumerate() {
-        if let Some((_, Some(parameters))) = own {
-            assembly.parts.node_parameters.push((NodeId::new(n)?, *parameters));
-        }
-    }
-    Ok(())
 }

@@ -1,191 +1,245 @@
-//! The keywords and numbers of a file, whether it is text or binary.
+//! Keywords and numbers of a GMF file, whether written as text or as bytes.
+
+use std::io::BufRead;
 
 use super::fault::GmfFault;
 use super::keyword::Keyword;
-use crate::formats::error::{Fault, Flaw, Place};
+use super::{MARK, VERSIONS};
+use crate::formats::error::{Fault, Flaw};
 use crate::formats::scanner::Scanner;
 
 /// A file being read.
-pub(super) enum Source<'a> {
-    Text(Scanner<&'a [u8]>),
-    Binary(Bytes<'a>),
+pub(super) struct Source<R> {
+    scanner: Scanner<R>,
+    length: u64,
+    form: Form,
 }
 
-/// A binary file: its content, where the reader stands, and how numbers are written.
-pub(super) struct Bytes<'a> {
-    content: &'a [u8],
-    at: usize,
-    big_endian: bool,
-    version: i64,
-    /// Where the next keyword is.
-    next: usize,
+enum Form {
+    Text {
+        /// Whether the content of the keyword before is read to its end, so that another must follow.
+        complete: bool,
+    },
+    Bytes(Layout),
 }
 
-impl<'a> Source<'a> {
-    /// Reads the version.
-    ///
-    /// # Errors
-    /// [`GmfFault::Version`].
-    pub(super) fn new(content: &'a [u8]) -> Result<Source<'a>, Flaw> {
-        let what = "the version";
-        if content.first().is_some_and(|&byte| byte <= 1) {
-            let mut bytes = Bytes { content, at: 0, big_endian: content[0] == 0, version: 1, next: 8 };
-            bytes.at = 4; // the number 1
-            bytes.version = bytes.small_int(what)?;
-            return match bytes.version {
-                1..=4 => Ok(Source::Binary(bytes)),
-                other => Err(bytes.flaw(GmfFault::Version(other))),
-            };
+/// How a binary file is written.
+struct Layout {
+    version: u32,
+    /// Whether the byte order is the other one than little-endian.
+    swap: bool,
+    /// 4 bytes a real number rather than 8.
+    short_reals: bool,
+    /// Where the content of the present keyword ends.
+    end: u64,
+    /// Whether no keyword follows it.
+    last: bool,
+}
+
+impl<R: BufRead> Source<R> {
+    /// A text of a known length; its version says nothing about how it is written.
+    pub(super) fn text(input: R, length: u64) -> Result<Source<R>, Flaw> {
+        let form = Form::Text { complete: false };
+        let mut source = Source { scanner: Scanner::new(input, length), length, form };
+        let what = "MeshVersionFormatted";
+        let mut word = source.scanner.word(what)?.to_owned();
+        while word.starts_with('#') {
+            source.scanner.rest_of_line()?;
+            word = source.scanner.word(what)?.to_owned();
         }
-        let mut source = Source::Text(Scanner::new(content, content.len() as u64));
-        let word = source.word(what)?;
-        let version = match word.strip_prefix("MeshVersionFormatted") {
-            Some("") => source.int(what)?,
-            Some(rest) => rest.parse().unwrap_or(0),
-            None => return Err(source.flaw(Fault::Unexpected { what: "MeshVersionFormatted", found: word })),
+        let version = match word.strip_prefix(what) {
+            Some("") => source.int("the version")?,
+            Some(version) => version.parse().unwrap_or(0),
+            None => return Err(source.flaw(Fault::Unexpected { what, found: word.chars().take(40).collect() })),
         };
-        if (1..=4).contains(&version) { Ok(source) } else { Err(source.flaw(GmfFault::Version(version))) }
+        match u32::try_from(version) {
+            Ok(known) if VERSIONS.contains(&known) => Ok(source),
+            _ => Err(source.flaw(GmfFault::Version(version))),
+        }
+    }
+
+    /// A binary file of a known length.
+    pub(super) fn binary(input: R, length: u64) -> Result<Source<R>, Flaw> {
+        let mut scanner = Scanner::new(input, length);
+        scanner.binary = true;
+        let swap = u32::from_le_bytes(scanner.bytes("the byte order")?) != MARK;
+        let layout = Layout { version: 0, swap, short_reals: false, end: 0, last: false };
+        let mut source = Source { scanner, length, form: Form::Bytes(layout) };
+        let version = u32::from_le_bytes(source.raw("the version")?);
+        if !VERSIONS.contains(&version) {
+            return Err(source.flaw(GmfFault::Version(version.into())));
+        }
+        if let Form::Bytes(layout) = &mut source.form {
+            (layout.version, layout.short_reals, layout.end) = (version, version == 1, 8);
+        }
+        Ok(source)
     }
 
     /// A fault here.
     pub(super) fn flaw(&self, fault: impl Into<Fault>) -> Flaw {
-        match self {
-            Source::Text(scanner) => scanner.flaw(fault),
-            Source::Binary(bytes) => bytes.flaw(fault),
-        }
+        self.scanner.flaw(fault)
     }
 
-    /// The next keyword, or the name of one that is not read, whose lines are passed over; `None` at the end of the file.
-    pub(super) fn keyword(&mut self) -> Result<Option<Result<Keyword, String>>, Flaw> {
-        match self {
-            Source::Binary(bytes) => bytes.keyword(),
-            Source::Text(_) => loop {
-                let Some(word) = self.next_word()? else { return Ok(None) };
-                // Numbers belong to a keyword that is not read.
-                if word.starts_with(|first: char| first.is_ascii_alphabetic()) {
-                    return Ok(Some(Keyword::of_name(&word).ok_or(word)));
-                }
-            },
-        }
-    }
-
-    /// The number of lines of a keyword, of so many whole and real numbers each: no more than the file has room for.
-    pub(super) fn count(&mut self, what: &'static str, ints: u64, reals: u64) -> Result<usize, Flaw> {
-        let (count, rest, least) = match self {
-            Source::Text(scanner) => (scanner.number(what)?, scanner.rest(), 2 * (ints + reals)),
-            Source::Binary(bytes) => {
-                let count = bytes.long_int(what, bytes.version > 3)?;
-                (count, bytes.rest(), bytes.int_width() * ints + bytes.real_width() * reals)
-            }
+    /// The next keyword that is known; `None` at the end.
+    pub(super) fn keyword(&mut self) -> Result<Option<Keyword>, Flaw> {
+        let keyword = match self.form {
+            Form::Text { .. } => self.word()?,
+            Form::Bytes(_) => self.code()?,
         };
-        let fits = u64::try_from(count).ok().filter(|count| count.saturating_mul(least) <= rest.saturating_add(1));
-        let checked = fits.and_then(|count| usize::try_from(count).ok());
-        checked.ok_or_else(|| self.flaw(Fault::Count { what, count: count.max(0) as u64, rest }))
+        Ok(keyword.filter(|&keyword| keyword != Keyword::End))
     }
 
-    /// The dimension of the vertices.
+    fn word(&mut self) -> Result<Option<Keyword>, Flaw> {
+        while self.scanner.more()? {
+            let word = self.scanner.word("a keyword")?;
+            let first = word.chars().next().unwrap_or_default();
+            if first == '#' {
+                self.scanner.rest_of_line()?;
+                continue;
+            }
+            // A word of what is not read is mostly a number.
+            let keyword = if first.is_alphabetic() { Keyword::of_word(word) } else { None };
+            let found: String = word.chars().take(40).collect();
+            let Form::Text { complete } = &mut self.form else { return Ok(None) };
+            if keyword.is_none() && *complete && !first.is_alphabetic() {
+                let what =
+                    "a keyword (more numbers than announced, or elements with more nodes than their keyword says?)";
+                return Err(self.flaw(Fault::Unexpected { what, found }));
+            }
+            *complete = keyword.is_some();
+            if keyword.is_some() {
+                return Ok(keyword);
+            }
+        }
+        Ok(None)
+    }
+
+    fn code(&mut self) -> Result<Option<Keyword>, Flaw> {
+        loop {
+            self.skip()?;
+            let Form::Bytes(Layout { version, last, .. }) = self.form else { return Ok(None) };
+            if last || self.scanner.rest() == 0 {
+                return Ok(None);
+            }
+            let what = "a keyword's head";
+            let code = i32::from_le_bytes(self.raw(what)?);
+            let long = version >= 3;
+            let next =
+                if long { u64::from_le_bytes(self.raw(what)?) } else { u32::from_le_bytes(self.raw(what)?).into() };
+            if next != 0 && (next < self.position() || next > self.length) {
+                return Err(self.flaw(GmfFault::Position { code, next }));
+            }
+            let end = if next == 0 { self.length } else { next };
+            if let Form::Bytes(layout) = &mut self.form {
+                (layout.end, layout.last) = (end, next == 0);
+            }
+            if let Some(keyword) = Keyword::of_code(code) {
+                return Ok(Some(keyword));
+            }
+        }
+    }
+
+    /// Leaves the rest of a keyword's content unread.
+    pub(super) fn pass_over(&mut self) {
+        if let Form::Text { complete } = &mut self.form {
+            *complete = false;
+        }
+    }
+
+    /// Goes to the end of the present keyword's content.
+    fn skip(&mut self) -> Result<(), Flaw> {
+        let Form::Bytes(Layout { end, .. }) = self.form else { return Ok(()) };
+        let mut piece = [0; 1 << 12];
+        while self.position() < end {
+            let length = (end - self.position()).min(piece.len() as u64) as usize;
+            self.scanner.fill(&mut piece[..length], "what is not read")?;
+        }
+        Ok(())
+    }
+
+    fn position(&self) -> u64 {
+        self.length - self.scanner.rest()
+    }
+
+    fn raw<const N: usize>(&mut self, what: &'static str) -> Result<[u8; N], Flaw> {
+        let mut bytes = self.scanner.bytes(what)?;
+        if matches!(self.form, Form::Bytes(Layout { swap: true, .. })) {
+            bytes.reverse();
+        }
+        Ok(bytes)
+    }
+
+    /// The number behind `Dimension`, which has 4 bytes in all versions.
     pub(super) fn dimension(&mut self) -> Result<i64, Flaw> {
-        let what = "the dimension";
-        match self {
-            Source::Text(scanner) => scanner.number(what),
-            Source::Binary(bytes) => bytes.small_int(what),
+        match self.form {
+            Form::Text { .. } => self.int("the dimension"),
+            Form::Bytes(_) => Ok(i32::from_le_bytes(self.raw("the dimension")?).into()),
         }
     }
 
     /// A whole number.
     pub(super) fn int(&mut self, what: &'static str) -> Result<i64, Flaw> {
-        match self {
-            Source::Text(scanner) => scanner.number(what),
-            Source::Binary(bytes) => bytes.long_int(what, bytes.version > 3),
+        match self.form {
+            Form::Text { .. } => self.parsed(what),
+            Form::Bytes(Layout { version: 4, .. }) => Ok(i64::from_le_bytes(self.raw(what)?)),
+            Form::Bytes(_) => Ok(i32::from_le_bytes(self.raw(what)?).into()),
         }
     }
 
     /// A real number.
     pub(super) fn real(&mut self, what: &'static str) -> Result<f64, Flaw> {
-        match self {
-            Source::Text(scanner) => scanner.number(what),
-            Source::Binary(bytes) => bytes.real(what),
+        match self.form {
+            Form::Text { .. } => self.parsed(what),
+            Form::Bytes(Layout { short_reals: true, .. }) => Ok(f32::from_le_bytes(self.raw(what)?).into()),
+            Form::Bytes(_) => Ok(f64::from_le_bytes(self.raw(what)?)),
         }
     }
 
-    /// The next word that is no comment, where the file may not end.
-    fn word(&mut self, what: &'static str) -> Result<String, Flaw> {
-        self.next_word()?.ok_or_else(|| self.flaw(Fault::Truncated(what)))
-    }
-
-    fn next_word(&mut self) -> Result<Option<String>, Flaw> {
-        let Source::Text(scanner) = self else { return Ok(None) };
-        while scanner.more()? {
-            let word = scanner.word("a keyword")?.to_owned();
-            if !word.starts_with('#') {
-                return Ok(Some(word));
+    /// A word as a number; Fortran's `D` may stand for `E`.
+    fn parsed<T: std::str::FromStr>(&mut self, what: &'static str) -> Result<T, Flaw> {
+        loop {
+            let word = self.scanner.word(what)?;
+            if let Ok(value) = word.parse() {
+                return Ok(value);
             }
-            scanner.rest_of_line()?;
+            if let Ok(value) = word.replace(['D', 'd'], "E").parse() {
+                return Ok(value);
+            }
+            if !word.starts_with('#') {
+                let found = word.chars().take(40).collect();
+                return Err(self.flaw(Fault::Number { what, found }));
+            }
+            self.scanner.rest_of_line()?;
         }
-        Ok(None)
-    }
-}
-
-impl Bytes<'_> {
-    fn flaw(&self, fault: impl Into<Fault>) -> Flaw {
-        Flaw::new(Place::Byte(self.at as u64), fault)
     }
 
-    fn rest(&self) -> u64 {
-        (self.content.len() - self.at) as u64
-    }
-
-    fn int_width(&self) -> u64 {
-        if self.version > 3 { 8 } else { 4 }
-    }
-
-    fn real_width(&self) -> u64 {
-        if self.version > 1 { 8 } else { 4 }
-    }
-
-    fn keyword(&mut self) -> Result<Option<Result<Keyword, String>>, Flaw> {
-        if self.next == 0 || self.next >= self.content.len() {
-            return Ok(None);
+    /// Says how many bits reals have in a binary file, whatever its version.
+    pub(super) fn set_precision(&mut self, bits: i64) -> Result<(), Flaw> {
+        match (&mut self.form, bits) {
+            (Form::Bytes(layout), 32 | 64) => layout.short_reals = bits == 32,
+            (Form::Text { .. }, _) => {}
+            _ => return Err(self.flaw(GmfFault::Precision(bits))),
         }
-        self.at = self.next;
-        let code = self.small_int("a keyword")?;
-        let next = self.long_int("the place of the next keyword", self.version > 2)?;
-        let place = usize::try_from(next).ok().filter(|&next| next == 0 || next >= self.at);
-        let Some(place) = place.filter(|&next| next <= self.content.len()) else {
-            return Err(self.flaw(GmfFault::Next(next as u64)));
+        Ok(())
+    }
+
+    /// A count of rows of `ints` and `reals` numbers that the file can hold, so that it may be allocated for.
+    pub(super) fn count(&mut self, what: &'static str, ints: u64, reals: u64) -> Result<usize, Flaw> {
+        let count = self.int(what)?;
+        let (rest, least) = match &self.form {
+            // The last word of a text needs no space after it.
+            Form::Text { .. } => (self.scanner.rest() + 1, 2 * (ints + reals)),
+            Form::Bytes(Layout { version, short_reals, end, .. }) => {
+                let (int, real) = (if *version == 4 { 8 } else { 4 }, if *short_reals { 4 } else { 8 });
+                (end.saturating_sub(self.position()), int * ints + real * reals)
+            }
         };
-        self.next = place;
-        Ok(Some(Keyword::of_code(code).ok_or_else(|| format!("number {code}"))))
-    }
-
-    fn take<const N: usize>(&mut self, what: &'static str) -> Result<[u8; N], Flaw> {
-        let Some(&bytes) = self.content[self.at..].first_chunk::<N>() else {
-            return Err(self.flaw(Fault::Truncated(what)));
+        let Ok(count) = u64::try_from(count) else {
+            return Err(self.flaw(Fault::Number { what, found: count.to_string() }));
         };
-        self.at += N;
-        Ok(bytes)
-    }
-
-    fn small_int(&mut self, what: &'static str) -> Result<i64, Flaw> {
-        let bytes = self.take(what)?;
-        Ok(i64::from(if self.big_endian { i32::from_be_bytes(bytes) } else { i32::from_le_bytes(bytes) }))
-    }
-
-    /// A whole number of 8 bytes where it is `long`, else of 4.
-    fn long_int(&mut self, what: &'static str, long: bool) -> Result<i64, Flaw> {
-        if !long {
-            return self.small_int(what);
+        match usize::try_from(count) {
+            Ok(fits) if count <= rest / least.max(1) => Ok(fits),
+            _ => Err(self.flaw(Fault::Count { what, count, rest })),
         }
-        let bytes = self.take(what)?;
-        Ok(if self.big_endian { i64::from_be_bytes(bytes) } else { i64::from_le_bytes(bytes) })
-    }
-
-    fn real(&mut self, what: &'static str) -> Result<f64, Flaw> {
-        if self.version > 1 {
-            let bytes = self.take(what)?;
-            return Ok(if self.big_endian { f64::from_be_bytes(bytes) } else { f64::from_le_bytes(bytes) });
-        }
-        let bytes = self.take(what)?;
-        Ok(f64::from(if self.big_endian { f32::from_be_bytes(bytes) } else { f32::from_le_bytes(bytes) }))
     }
 }

@@ -1,278 +1,185 @@
-//! Writing.
+//! A GMF file from a mesh.
 
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 
-use super::keyword::{Keyword, cells};
-use super::node_order::coordinates;
-use crate::element::{Cell, Order};
+use super::keyword::{self, Keyword};
+use super::node_order;
+use super::sink::{Form, Sink};
+use crate::element::{Cell, Order, lattice};
 use crate::formats::output::Unwritten;
 use crate::mesh::{Block, Mesh, NodeId};
 
-/// Bytes of a keyword's number.
-const CODE: u64 = 4;
-
-/// Writes a mesh in binary, of the lowest version that has room: 2, 3 beyond 2 GB, 4 beyond 2^31 numbers.
+/// Writes a mesh, as bytes or as text. Equal meshes make equal bytes.
 ///
-/// # Errors
-/// What the stream returns.
-pub(super) fn binary(out: &mut impl Write, mesh: &Mesh) -> Result<(), Unwritten> {
-    let sections = Sections::new(mesh);
-    let most = sections.list.iter().map(|section| section.lines).max().unwrap_or(0);
-    let version: i32 = if most.max(mesh.points().len()) > i32::MAX as usize {
-        4
-    } else if sections.bytes(2) > i32::MAX as u64 {
-        3
-    } else {
-        2
-    };
-    out.write_all(&1_i32.to_le_bytes())?;
-    out.write_all(&version.to_le_bytes())?;
-    let mut sink = Binary { out, version, at: 8 };
-    sections.write(&mut sink)?;
-    Ok(())
+/// Elements stand in the mesh's order within their kind. Elements on points are corners.
+pub(super) fn write(out: &mut impl Write, mesh: &Mesh, binary: bool) -> Result<(), Unwritten> {
+    let sections = sections(mesh);
+    let form = if binary { Form::Bytes { version: version(mesh, &sections) } } else { Form::Text };
+    Ok(write_as(out, mesh, &sections, form)?)
 }
 
-/// Writes a mesh as text.
-///
-/// # Errors
-/// What the stream returns.
-pub(super) fn text(out: &mut impl Write, mesh: &Mesh) -> Result<(), Unwritten> {
-    writeln!(out, "MeshVersionFormatted 2")?;
-    Sections::new(mesh).write(&mut Text { out, begun: false })?;
-    Ok(())
+/// The lowest version that positions and counts fit into.
+fn version(mesh: &Mesh, sections: &[Section]) -> u32 {
+    let rows = sections.iter().map(|section| section.rows).max().unwrap_or(0);
+    let fits = |length: u64| i32::try_from(length).is_ok();
+    if !fits(rows.max(mesh.points().len()) as u64) {
+        return 4;
+    }
+    let form = Form::Bytes { version: 2 };
+    let length: u64 = sections.iter().map(|section| section.length(form)).sum();
+    if fits(length + START) { 2 } else { 3 }
 }
 
-/// Takes the keywords and numbers of a file.
-trait Sink {
-    /// That vertices have three coordinates.
-    fn dimension(&mut self) -> io::Result<()>;
-    /// A keyword, with the number of its lines where it has such, and of the whole and real numbers of all of them.
-    fn keyword(&mut self, keyword: Keyword, lines: Option<usize>, numbers: [u64; 2]) -> io::Result<()>;
-    fn int(&mut self, value: i64) -> io::Result<()>;
-    fn real(&mut self, value: f64) -> io::Result<()>;
-    fn end_line(&mut self) -> io::Result<()>;
-}
+/// Bytes beside the sections, at most.
+const START: u64 = 64;
 
-/// What the file consists of.
-struct Sections<'a> {
-    mesh: &'a Mesh,
-    list: Vec<Section<'a>>,
-}
-
-/// A keyword and how large it is.
-struct Section<'a> {
+/// A keyword and its rows.
+pub(super) struct Section<'a> {
     keyword: Keyword,
-    lines: usize,
-    /// Whole and real numbers a line.
-    width: [u64; 2],
+    rows: usize,
+    ints: u64,
+    reals: u64,
     content: Content<'a>,
 }
 
 enum Content<'a> {
-    Vertices,
-    Blocks(Vec<&'a Block>),
-    Ordering(Cell, Order),
-    /// Nodes on geometric entities of a dimension, with their parameters.
-    OnGeometry(Vec<(NodeId, i32, [f64; 2])>),
+    Vertices {
+        axes: usize,
+    },
+    Elements(Vec<&'a Block>),
+    Ordering(Cell),
+    Corners(Vec<NodeId>),
+    /// Nodes, tags of entities, parameters.
+    OnGeometry(Vec<(NodeId, i32, Vec<f64>)>),
 }
 
-impl<'a> Sections<'a> {
-    fn new(mesh: &'a Mesh) -> Sections<'a> {
-        let order = mesh.order();
-        let mut list = vec![Section {
-            keyword: Keyword::Vertices,
-            lines: mesh.points().len(),
-            width: [1, 3],
-            content: Content::Vertices,
-        }];
-        for cell in cells() {
-            let blocks: Vec<&Block> = mesh.blocks().iter().filter(|block| block.cell == cell).collect();
-            let lines = blocks.iter().map(|block| block.tags.len()).sum();
-            if lines == 0 {
-                continue;
-            }
-            if order > Order::LINEAR {
-                let table = coordinates(cell, order);
-                list.push(Section {
-                    keyword: Keyword::Ordering(cell, order),
-                    lines: table.len(),
-                    width: [table[0].len() as u64, 0],
-                    content: Content::Ordering(cell, order),
-                });
-            }
-            let width = [cell.node_count(order) as u64 + 1, 0];
-            list.push(Section {
-                keyword: Keyword::Elements(cell, order),
-                lines,
-                width,
-                content: Content::Blocks(blocks),
-            });
-        }
-        for dimension in 0..=2 {
-            let nodes = on_geometry(mesh, dimension);
-            if !nodes.is_empty() {
-                let reals = if dimension == 0 { 0 } else { u64::from(dimension) + 1 };
-                let (keyword, lines) = (Keyword::OnGeometry(dimension), nodes.len());
-                list.push(Section { keyword, lines, width: [2, reals], content: Content::OnGeometry(nodes) });
-            }
-        }
-        Sections { mesh, list }
-    }
-
-    /// Size of a binary file of a version.
-    fn bytes(&self, version: i32) -> u64 {
-        let own =
-            |section: &Section| section.lines as u64 * (section.width[0] * int_width(version) + 8 * section.width[1]);
-        self.list.iter().map(own).sum::<u64>() + 64 * (self.list.len() as u64 + 2)
-    }
-
-    fn write(&self, sink: &mut impl Sink) -> io::Result<()> {
-        sink.dimension()?;
-        for Section { keyword, lines, width, content } in &self.list {
-            sink.keyword(*keyword, Some(*lines), width.map(|width| width * *lines as u64))?;
-            self.content(content, sink)?;
-        }
-        sink.keyword(Keyword::End, None, [0, 0])?;
-        sink.end_line()
-    }
-
-    fn content(&self, content: &Content, sink: &mut impl Sink) -> io::Result<()> {
-        match content {
-            Content::Vertices => {
-                for x in self.mesh.points() {
-                    x.to_array().into_iter().try_for_each(|x| sink.real(x))?;
-                    sink.int(0)?;
-                    sink.end_line()?;
-                }
-            }
-            Content::Blocks(blocks) => {
-                for block in blocks {
-                    for nodes in block.elements(self.mesh.order()) {
-                        nodes.iter().try_for_each(|node| sink.int(node.index() as i64 + 1))?;
-                        sink.int(block.entity.tag.into())?;
-                        sink.end_line()?;
-                    }
-                }
-            }
-            Content::Ordering(cell, order) => {
-                for row in coordinates(*cell, *order) {
-                    row.into_iter().try_for_each(|x| sink.int(x))?;
-                    sink.end_line()?;
-                }
-            }
-            Content::OnGeometry(nodes) => {
-                for (node, tag, parameters) in nodes {
-                    sink.int(node.index() as i64 + 1)?;
-                    sink.int((*tag).into())?;
-                    let dimension = usize::from(self.dimension_of(*node));
-                    parameters[..dimension].iter().try_for_each(|&t| sink.real(t))?;
-                    if dimension > 0 {
-                        sink.real(0.0)?; // the distance from the geometry
-                    }
-                    sink.end_line()?;
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn dimension_of(&self, node: NodeId) -> u8 {
-        self.mesh.node_entities()[node.index()].map_or(0, |key| key.dimension)
+impl Section<'_> {
+    fn length(&self, form: Form) -> u64 {
+        form.head() + form.int_width() + self.rows as u64 * (self.ints * form.int_width() + 8 * self.reals)
     }
 }
 
-/// The nodes on geometric entities of a dimension; on curves and surfaces those of which the parameters are known.
-fn on_geometry(mesh: &Mesh, dimension: u8) -> Vec<(NodeId, i32, [f64; 2])> {
-    let of_node = |node: NodeId| mesh.node_entities().get(node.index()).copied().flatten();
-    let on = |node: NodeId| of_node(node).filter(|key| key.dimension == dimension).map(|key| key.tag);
+/// Everything that is written of a mesh.
+pub(super) fn sections(mesh: &Mesh) -> Vec<Section<'_>> {
+    let axes = axes(mesh);
+    let vertices = Content::Vertices { axes };
+    let mut sections = vec![Section {
+        keyword: Keyword::Vertices,
+        rows: mesh.points().len(),
+        ints: 1,
+        reals: axes as u64,
+        content: vertices,
+    }];
+    let order = mesh.order();
+    let of_cell = |cell: Cell| -> Vec<&Block> {
+        mesh.blocks().iter().filter(|block| block.cell == cell && !block.tags.is_empty()).collect()
+    };
+    for cell in keyword::cells() {
+        let blocks = of_cell(cell);
+        let (rows, ints) = (blocks.iter().map(|block| block.tags.len()).sum(), cell.node_count(order) as u64 + 1);
+        if rows == 0 {
+            continue;
+        }
+        if order > Order::LINEAR {
+            let (rows, ints) = (cell.node_count(order), node_order::indices(cell) as u64);
+            let (keyword, content) = (Keyword::Ordering(cell, order), Content::Ordering(cell));
+            sections.push(Section { keyword, rows, ints, reals: 0, content });
+        }
+        let (keyword, content) = (Keyword::Elements(cell, order), Content::Elements(blocks));
+        sections.push(Section { keyword, rows, ints, reals: 0, content });
+    }
+    let mut corners: Vec<NodeId> = of_cell(Cell::Point).iter().flat_map(|block| block.nodes.iter().copied()).collect();
+    corners.sort_unstable();
+    corners.dedup();
+    if !corners.is_empty() {
+        let (rows, content) = (corners.len(), Content::Corners(corners));
+        sections.push(Section { keyword: Keyword::Corners, rows, ints: 1, reals: 0, content });
+    }
+    sections.extend((0..=2).filter_map(|dimension| on_geometry(mesh, dimension)));
+    sections
+}
+
+/// Coordinates of a vertex: two where the mesh is one of the plane.
+fn axes(mesh: &Mesh) -> usize {
+    // -0 has a sign that would be lost.
+    if mesh.dimension() == 2 && mesh.points().iter().all(|x| x.z.to_bits() == 0) { 2 } else { 3 }
+}
+
+/// Which nodes lie on which entities of a dimension, where they have parameters there; points need none.
+fn on_geometry(mesh: &Mesh, dimension: u8) -> Option<Section<'_>> {
+    let mut rows: BTreeMap<NodeId, (i32, Vec<f64>)> = BTreeMap::new();
     if dimension == 0 {
-        let nodes = (0..mesh.points().len()).filter_map(|n| NodeId::new(n).ok());
-        return nodes.filter_map(|node| Some((node, on(node)?, [0.0; 2]))).collect();
-    }
-    mesh.node_parameters().iter().filter_map(|&(node, parameters)| Some((node, on(node)?, parameters))).collect()
-}
-
-fn int_width(version: i32) -> u64 {
-    if version > 3 { 8 } else { 4 }
-}
-
-struct Text<W> {
-    out: W,
-    /// Whether the present line has a number.
-    begun: bool,
-}
-
-impl<W: Write> Text<W> {
-    fn gap(&mut self) -> io::Result<()> {
-        if std::mem::replace(&mut self.begun, true) { self.out.write_all(b" ") } else { Ok(()) }
-    }
-}
-
-impl<W: Write> Sink for Text<W> {
-    fn dimension(&mut self) -> io::Result<()> {
-        writeln!(self.out, "\n{} 3", Keyword::Dimension.name())
-    }
-
-    fn keyword(&mut self, keyword: Keyword, lines: Option<usize>, _: [u64; 2]) -> io::Result<()> {
-        write!(self.out, "\n{}", keyword.name())?;
-        lines.map_or(Ok(()), |lines| writeln!(self.out, "\n{lines}"))
-    }
-
-    fn int(&mut self, value: i64) -> io::Result<()> {
-        self.gap()?;
-        write!(self.out, "{value}")
-    }
-
-    fn real(&mut self, value: f64) -> io::Result<()> {
-        self.gap()?;
-        write!(self.out, "{value:?}")
-    }
-
-    fn end_line(&mut self) -> io::Result<()> {
-        self.begun = false;
-        self.out.write_all(b"\n")
-    }
-}
-
-struct Binary<W> {
-    out: W,
-    version: i32,
-    /// Bytes written so far.
-    at: u64,
-}
-
-impl<W: Write> Sink for Binary<W> {
-    fn dimension(&mut self) -> io::Result<()> {
-        self.at += 4; // of the number itself, which has 4 bytes in every version
-        self.keyword(Keyword::Dimension, None, [0, 0])?;
-        self.out.write_all(&3_i32.to_le_bytes())
-    }
-
-    fn keyword(&mut self, keyword: Keyword, lines: Option<usize>, [ints, reals]: [u64; 2]) -> io::Result<()> {
-        let place = if self.version > 2 { 8 } else { 4 };
-        let count = lines.map_or(0, |_| int_width(self.version));
-        self.at += CODE + place + count + ints * int_width(self.version) + 8 * reals;
-        let next = if keyword == Keyword::End { 0 } else { self.at };
-        self.out.write_all(&keyword.code().to_le_bytes())?;
-        match place {
-            8 => self.out.write_all(&next.to_le_bytes())?,
-            _ => self.out.write_all(&(next as u32).to_le_bytes())?,
+        for block in mesh.blocks().iter().filter(|block| block.cell == Cell::Point) {
+            rows.extend(block.nodes.iter().map(|&node| (node, (block.entity.tag, Vec::new()))));
         }
-        lines.map_or(Ok(()), |lines| self.int(lines as i64))
-    }
-
-    fn int(&mut self, value: i64) -> io::Result<()> {
-        match self.version {
-            4.. => self.out.write_all(&value.to_le_bytes()),
-            _ => self.out.write_all(&(value as i32).to_le_bytes()),
+        let classified = mesh.node_entities().iter().enumerate();
+        for (n, key) in classified.filter_map(|(n, key)| Some((n, (*key)?))).filter(|(_, key)| key.dimension == 0) {
+            // All nodes of a mesh have numbers.
+            rows.entry(NodeId::new(n).unwrap_or_default()).or_insert((key.tag, Vec::new()));
+        }
+    } else {
+        for &(node, parameters) in mesh.node_parameters() {
+            let own = mesh.node_entities().get(node.index()).copied().flatten();
+            if let Some(key) = own.filter(|key| key.dimension == dimension) {
+                rows.insert(node, (key.tag, parameters[..usize::from(dimension)].to_vec()));
+            }
         }
     }
+    rows.retain(|_, (tag, _)| *tag > 0);
+    let reals = if dimension == 0 { 0 } else { u64::from(dimension) + 1 };
+    let rows: Vec<_> = rows.into_iter().map(|(node, (tag, parameters))| (node, tag, parameters)).collect();
+    let keyword = Keyword::OnGeometry(dimension);
+    let section = Section { keyword, rows: rows.len(), ints: 2, reals, content: Content::OnGeometry(rows) };
+    (section.rows > 0).then_some(section)
+}
 
-    fn real(&mut self, value: f64) -> io::Result<()> {
-        self.out.write_all(&value.to_le_bytes())
+/// Writes sections in a given form.
+pub(super) fn write_as(out: &mut impl Write, mesh: &Mesh, sections: &[Section], form: Form) -> io::Result<()> {
+    let mut sink = Sink::new(out, form);
+    sink.begin(axes(mesh) as u32)?;
+    let mut next = 8 + form.head() + 4;
+    for section in sections {
+        next += section.length(form);
+        sink.keyword(section.keyword, section.rows as u64, next)?;
+        content(&mut sink, mesh, section)?;
     }
+    sink.end()
+}
 
-    fn end_line(&mut self) -> io::Result<()> {
-        Ok(())
+fn content(sink: &mut Sink<impl Write>, mesh: &Mesh, section: &Section) -> io::Result<()> {
+    let number = |node: &NodeId| node.index() as i64 + 1;
+    match &section.content {
+        Content::Vertices { axes } => mesh.points().iter().try_for_each(|point| {
+            point.to_array()[..*axes].iter().try_for_each(|&x| sink.real(x))?;
+            sink.int(0)?;
+            sink.end_row()
+        }),
+        Content::Elements(blocks) => blocks.iter().try_for_each(|block| {
+            block.elements(mesh.order()).try_for_each(|nodes| {
+                nodes.iter().try_for_each(|node| sink.int(number(node)))?;
+                sink.int(block.entity.tag.into())?;
+                sink.end_row()
+            })
+        }),
+        Content::Ordering(cell) => lattice(*cell, mesh.order()).iter().try_for_each(|&at| {
+            let row = node_order::row(*cell, mesh.order(), at);
+            row.into_iter().try_for_each(|index| sink.int(index.into()))?;
+            sink.end_row()
+        }),
+        Content::Corners(nodes) => nodes.iter().try_for_each(|node| {
+            sink.int(number(node))?;
+            sink.end_row()
+        }),
+        Content::OnGeometry(rows) => rows.iter().try_for_each(|(node, tag, parameters)| {
+            sink.int(number(node))?;
+            sink.int((*tag).into())?;
+            parameters.iter().try_for_each(|&x| sink.real(x))?;
+            // The distance from the entity, where there are parameters.
+            if !parameters.is_empty() {
+                sink.real(0.0)?;
+            }
+            sink.end_row()
+        }),
     }
 }
