@@ -103,9 +103,9 @@ pub struct Association {
     pub planes: Vec<Plane>,
     /// Classification of every linear node.
     pub nodes: Vec<Classification>,
-    /// Classification of the inner nodes of every boundary face, by index in [`Boundary::faces`].
+    /// Classification of the inner nodes of every boundary face, by index in [`Boundary::faces`](crate::mesh::Boundary::faces).
     pub faces: Vec<Classification>,
-    /// Classification of the inner nodes of every boundary edge, by index in [`Boundary::edges`].
+    /// Classification of the inner nodes of every boundary edge, by index in [`Boundary::edges`](crate::mesh::Boundary::edges).
     pub edges: Vec<Classification>,
     /// What a user should know and need not fix.
     pub notes: Vec<String>,

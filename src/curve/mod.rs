@@ -1,6 +1,6 @@
 //! Curving: from a linear mesh, its CAD and perhaps a linkage, all in memory, to a curved mesh that is proven valid.
 //!
-//! [`curve`] is the driver: it associates the mesh with the CAD, goes up order by order ([`orders`]) to the one asked for, proves the
+//! [`curve`] is the driver: it associates the mesh with the CAD, goes up order by order (`orders.rs`) to the one asked for, proves the
 //! result ([`proof`]), and where that fails calls [`recover`]. [`Job`] does the same from files. What is handed from step to step is
 //! the [`level::Level`]: the mesh at one order with its straight and its curved coordinates, and the state of its boundary.
 //!

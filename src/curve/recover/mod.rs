@@ -5,7 +5,7 @@
 //! 2. Take the displacement back around the failing elements, at first by half, more from round to round, with a fraction that falls
 //!    smoothly with the distance, and smooth again; wall nodes that are off the CAD stay where they were put.
 //! 3. [`backtrack`], element by element, which ends in a valid mesh whatever came before.
-//! 4. Forward again what went back, step by step, as far as the mesh stays proven ([`forward`]).
+//! 4. Forward again what went back, step by step, as far as the mesh stays proven (`forward.rs`).
 //!
 //! Back means to the curved mesh of the order below, where that is proven valid: on it the wall follows the CAD as well as that order
 //! can, and all nodes go back together. Otherwise it means the straight mesh: the wall goes back, and the volume is carried along as
