@@ -6,8 +6,8 @@ use std::path::Path;
 
 use super::detect::{Head, Verdict};
 use super::error::Error;
+use super::options::{ReadOptions, WriteOptions};
 use super::output::{Part, Unwritten};
-use super::{ReadOptions, WriteOptions};
 use crate::element::{Cell, Order};
 use crate::mesh::Mesh;
 

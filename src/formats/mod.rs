@@ -16,6 +16,7 @@ mod gmf;
 pub mod msh;
 mod node_order;
 mod numbers;
+mod options;
 mod output;
 mod plot3d;
 mod recognise;
@@ -26,7 +27,7 @@ mod turned;
 mod ugrid;
 mod vtk;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use format::Input;
 use recognise::detect;
@@ -34,34 +35,10 @@ use recognise::detect;
 pub use error::{Error, Fault, Flaw, Place};
 pub use field::{Field, Support, Values};
 pub use format::{Format, Holds, Reader, Writer};
+pub use options::{ReadOptions, WriteOptions};
 pub use registry::{REGISTRY, readable, table, writable};
 
 use crate::mesh::Mesh;
-
-/// How files are read.
-#[derive(Clone, Debug, Default)]
-pub struct ReadOptions {
-    /// Program in which CGNS files are parsed; default none, which parses them in this process.
-    ///
-    /// Some malformed CGNS files make the HDF5 library crash, hang or eat up the memory. Who reads files of strangers gives a
-    /// program here, which may be his own: it must call `cgns::serve_reader` with the second argument when its first is
-    /// `cgns::READER_SUBCOMMAND`, before anything else. It is run with limits of time and memory, and whatever happens to it is
-    /// an error here.
-    pub reader: Option<PathBuf>,
-}
-
-/// How files are written, where a format leaves a choice.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct WriteOptions<'a> {
-    /// Version of MSH files.
-    pub msh_version: msh::Version,
-    /// Encoding of MSH files.
-    pub msh_encoding: msh::Encoding,
-    /// VTU without the cells below the top dimension.
-    pub volume_only: bool,
-    /// Values to show, in VTU files.
-    pub fields: &'a [Field],
-}
 
 /// Reads a mesh file; the format is found by content and name.
 ///

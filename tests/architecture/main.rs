@@ -24,10 +24,7 @@ const KNOWN: &[(&str, &[&str])] = &[];
 const OWN_FILES: &[&str] = &[
     "src/associate/document",
     "src/associate/infer", // tolerances and candidates, and the order in which the parts find them
-    "src/formats",         // options of reading and writing, and the functions that read and write
-    "src/formats/cgns",
-    "src/formats/ugrid",
-    "src/validate", // how things are called in findings
+    "src/validate",        // how things are called in findings
 ];
 
 /// The name of a folder's own file in its graph.

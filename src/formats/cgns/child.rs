@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use cad::child::{ChildError, Limits, run};
 
-use super::{dump, room};
+use super::dump;
 use crate::formats::Error;
 
 /// First argument with which a program must call [`serve_reader`]; the second is the file.
@@ -23,7 +23,7 @@ pub fn serve_reader(path: &Path) -> ExitCode {
     cad::child::limit_memory();
     let Some(out) = cad::child::take_stdout() else { return ExitCode::FAILURE };
     let length = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
-    match dump::write(path, room(length), &mut BufWriter::with_capacity(1 << 20, out)) {
+    match dump::write(path, dump::room(length), &mut BufWriter::with_capacity(1 << 20, out)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(_) => ExitCode::FAILURE,
     }
@@ -35,7 +35,7 @@ pub fn serve_reader(path: &Path) -> ExitCode {
 /// [`Error`]: also where the library crashed or hung.
 pub(super) fn ask(program: &Path, path: &Path, length: u64) -> Result<Vec<u8>, Error> {
     let refused = |reason: String| Error::Format { file: path.to_path_buf(), reason };
-    let limits = Limits { timeout: Duration::from_secs(SECONDS + length / 10_000_000), memory: room(length) };
+    let limits = Limits { timeout: Duration::from_secs(SECONDS + length / 10_000_000), memory: dump::room(length) };
     let outcome = run(program, READER_SUBCOMMAND, path, &[], limits).map_err(|error| match error {
         ChildError::TimedOut { .. } => {
             refused(format!("reading took longer than {} s and was ended: a malformed file", limits.timeout.as_secs()))

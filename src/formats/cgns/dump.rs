@@ -11,6 +11,14 @@ use super::labels::{self, kind};
 /// Levels of a tree that are followed; CGNS has seven down to the arrays that are read.
 const DEEPEST: usize = 12;
 
+/// Memory that reading may take for what a file holds, beside four times its length, in bytes.
+const MEMORY: u64 = 1 << 30;
+
+/// Bytes that reading a file of `length` bytes may take.
+pub(super) fn room(length: u64) -> u64 {
+    MEMORY.saturating_add(length.saturating_mul(4))
+}
+
 /// Opens and creates files without a lock: nobody writes to one that is read, or knows of one that is written, and some file
 /// systems have no locks.
 pub(super) fn unlocked() -> hdf5::FileBuilder {

@@ -20,8 +20,9 @@ mod write;
 mod zone;
 
 use super::detect::{Head, Refusal, Verdict};
+use super::error::Error;
 use super::format::{Format, Holds, Input, Reader, Writer};
-use super::{Error, ReadOptions};
+use super::options::ReadOptions;
 use crate::element::{Cell, Order};
 use crate::mesh::Mesh;
 
@@ -64,14 +65,6 @@ fn detect(head: &Head) -> Verdict {
     Verdict::No
 }
 
-/// Memory that reading may take for what a file holds, beside four times its length, in bytes.
-const MEMORY: u64 = 1 << 30;
-
-/// Bytes that reading a file of `length` bytes may take.
-fn room(length: u64) -> u64 {
-    MEMORY.saturating_add(length.saturating_mul(4))
-}
-
 /// Reads a mesh.
 ///
 /// # Errors
@@ -84,7 +77,7 @@ fn read(input: Input, options: &ReadOptions) -> Result<Mesh, Error> {
         Some(program) => child::ask(program, path, length)?,
         None => {
             let mut bytes = Vec::new();
-            let dumped = dump::write(path, room(length), &mut bytes);
+            let dumped = dump::write(path, dump::room(length), &mut bytes);
             dumped.map_err(|cause| {
                 refused(format!("the HDF5 library cannot read it ({cause}): the file is malformed"))
             })?;

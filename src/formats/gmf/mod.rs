@@ -6,6 +6,7 @@
 
 mod association;
 mod fault;
+mod header;
 mod keyword;
 mod node_order;
 mod read;
@@ -16,10 +17,10 @@ mod write;
 #[cfg(test)]
 mod tests;
 
-use super::ReadOptions;
 use super::detect::{Head, Refusal, Verdict};
 use super::error::Error;
 use super::format::{Format, Holds, Input, Reader, Writer};
+use super::options::ReadOptions;
 use crate::element::{Cell, Order};
 use crate::mesh::Mesh;
 use source::Source;
@@ -52,13 +53,9 @@ pub(super) static FORMAT: Format = Format {
 const HOLDS: Holds =
     Holds { highest: Order::MAX, cells: &Cell::ALL, dimensions: &[2, 3], names: false, fields: false, notes: "" };
 
-/// Numbers at the beginning of binary files: a mark of the byte order, the version, the keyword `Dimension`.
-const MARK: u32 = 1;
-const VERSIONS: std::ops::RangeInclusive<u32> = 1..=4;
-
 fn detect(head: &Head) -> Verdict {
     let first = head.lines().into_iter().find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default();
-    if first.starts_with("MeshVersionFormatted") || is_binary(head.bytes) {
+    if first.starts_with("MeshVersionFormatted") || header::is_binary(head.bytes) {
         return Verdict::ByContent;
     }
     if first.starts_with("MFEM ") {
@@ -68,25 +65,8 @@ fn detect(head: &Head) -> Verdict {
     Verdict::No
 }
 
-/// Whether a file begins as a binary one, in either byte order.
-fn is_binary(head: &[u8]) -> bool {
-    let word = |n: usize| -> Option<[u8; 4]> { head.get(4 * n..4 * n + 4)?.try_into().ok() };
-    let begins = |number: fn([u8; 4]) -> u32| {
-        let version = word(1).map_or(0, number);
-        // The position of the next keyword is known; behind it stands the dimension.
-        let (next, dimension) = if version < 3 { (20, 4) } else { (24, 5) };
-        let next_at = if version >= 3 && word(0).map(u32::from_be_bytes) == Some(MARK) { 4 } else { 3 };
-        word(0).map(number) == Some(MARK)
-            && VERSIONS.contains(&version)
-            && word(2).map(number) == Some(keyword::DIMENSION)
-            && word(next_at).map(number) == Some(next)
-            && matches!(word(dimension).map(number), Some(2 | 3))
-    };
-    begins(u32::from_le_bytes) || begins(u32::from_be_bytes)
-}
-
 fn open(input: Input, _: &ReadOptions) -> Result<Mesh, Error> {
     let Input { path, length, head, content } = input;
-    let source = if is_binary(&head) { Source::binary(content, length) } else { Source::text(content, length) };
+    let source = if header::is_binary(&head) { Source::binary(content, length) } else { Source::text(content, length) };
     source.and_then(read::mesh).map_err(|flaw| flaw.of(path))
 }

@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 
+use super::header::MARK;
 use super::keyword::Keyword;
 
 /// Takes keywords and numbers in file order.
@@ -45,7 +46,7 @@ impl<'a, W: Write> Sink<'a, W> {
         match self.form {
             Form::Text => write!(self.out, "MeshVersionFormatted 2\n\nDimension {dimension}\n"),
             Form::Bytes { version } => {
-                self.out.write_all(&super::MARK.to_le_bytes())?;
+                self.out.write_all(&MARK.to_le_bytes())?;
                 self.out.write_all(&version.to_le_bytes())?;
                 self.head(Keyword::Dimension, 8 + self.form.head() + 4)?;
                 self.out.write_all(&dimension.to_le_bytes())

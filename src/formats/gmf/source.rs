@@ -3,8 +3,8 @@
 use std::io::BufRead;
 
 use super::fault::GmfFault;
+use super::header::{MARK, VERSIONS};
 use super::keyword::Keyword;
-use super::{MARK, VERSIONS};
 use crate::formats::error::{Fault, Flaw};
 use crate::formats::scanner::Scanner;
 

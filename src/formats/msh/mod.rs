@@ -36,6 +36,7 @@ use super::scanner::Scanner;
 use crate::element::{Cell, Order};
 use crate::mesh::Mesh;
 
+pub use super::options::{Encoding, Version};
 pub use type_code::of as element_type;
 
 /// Gmsh's own format.
@@ -59,40 +60,6 @@ pub(super) static FORMAT: Format = Format {
 
 const HOLDS: Holds =
     Holds { highest: Order::MAX, cells: &Cell::ALL, dimensions: &[2, 3], names: true, fields: false, notes: "" };
-
-/// Versions of the format.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Version {
-    /// 4.1: nodes and elements in blocks by entity.
-    #[default]
-    V4_1,
-    /// 2.2: what older readers take; keeps no boundaries of entities and no node parameters.
-    V2_2,
-}
-
-impl Version {
-    /// All versions that are written.
-    pub const ALL: [Version; 2] = [Version::V4_1, Version::V2_2];
-
-    /// What a file of the version says of itself.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Version::V4_1 => "4.1",
-            Version::V2_2 => "2.2",
-        }
-    }
-}
-
-/// How numbers are written.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Encoding {
-    /// As bytes, little-endian.
-    #[default]
-    Binary,
-    /// As text: larger and slower, for readers that take nothing else.
-    Ascii,
-}
 
 /// Reads a mesh from an MSH file's content of `length` bytes.
 ///

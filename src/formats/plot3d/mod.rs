@@ -13,6 +13,7 @@ use super::detect::Verdict;
 use super::error::{Error, Fault, Flaw};
 use super::format::{Format, Holds, Input, Reader};
 use super::numbers::{Encoding, Numbers};
+use super::options::ReadOptions;
 use crate::element::{Cell, Order};
 use crate::mesh::Mesh;
 use blocks::Block;
@@ -44,7 +45,7 @@ const REPEATED: usize = 16;
 ///
 /// # Errors
 /// [`Error::Format`] where no way to write the numbers fits the length; [`Error::Content`].
-fn read(input: Input, _: &super::ReadOptions) -> Result<Mesh, Error> {
+fn read(input: Input, _: &ReadOptions) -> Result<Mesh, Error> {
     let Input { path, length, head, content } = input;
     let flaw = |flaw: Flaw| flaw.of(path);
     if head.iter().all(|byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace()) {

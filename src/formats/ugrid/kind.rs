@@ -5,6 +5,10 @@ use std::path::Path;
 use crate::element::Cell;
 use crate::formats::numbers::{Encoding, Layout};
 
+/// The faces, then the volume cells, in file order.
+pub(super) const FACES: [Cell; 2] = [Cell::Triangle, Cell::Quad];
+pub(super) const CELLS: [Cell; 4] = [Cell::Tet, Cell::Pyramid, Cell::Prism, Cell::Hex];
+
 /// Bytes of the head that tell the kind: a record's length and seven long counts.
 const HEAD: usize = 4 + 7 * 8;
 
@@ -109,7 +113,7 @@ fn size(layout: Layout, head: &[u8]) -> Option<u64> {
     let corners = |cell: Cell| cell.corner_count() as u64;
     let mut ints = triangles.checked_mul(corners(Cell::Triangle) + 1)?;
     ints = ints.checked_add(quads.checked_mul(corners(Cell::Quad) + 1)?)?;
-    for (cell, count) in super::CELLS.into_iter().zip(cells) {
+    for (cell, count) in CELLS.into_iter().zip(cells) {
         ints = ints.checked_add(count.checked_mul(corners(cell))?)?;
     }
     let ints = ints.checked_add(7)?.checked_mul(width)?;

@@ -16,8 +16,10 @@ use super::error::{Error, Fault, Flaw};
 use super::format::{Format, Holds, Input, Reader};
 use super::node_order::NodeOrder;
 use super::numbers::Numbers;
+use super::options::ReadOptions;
 use crate::element::{Cell, Order};
 use crate::mesh::{EntityKey, Mesh, NodeId, Parts};
+use kind::{CELLS, FACES};
 
 /// The format of AFLR3, FUN3D and others.
 pub(super) static FORMAT: Format = Format {
@@ -46,11 +48,7 @@ static ORDER: NodeOrder = NodeOrder::new(|cell, order| match cell {
     _ => Some((0..cell.corner_count() as u8).collect()),
 });
 
-/// The faces, then the volume cells, in file order.
-const FACES: [Cell; 2] = [Cell::Triangle, Cell::Quad];
-const CELLS: [Cell; 4] = [Cell::Tet, Cell::Pyramid, Cell::Prism, Cell::Hex];
-
-fn open(input: Input, _: &super::ReadOptions) -> Result<Mesh, Error> {
+fn open(input: Input, _: &ReadOptions) -> Result<Mesh, Error> {
     let Input { path, length, head, content } = input;
     let encoding = kind::encoding(path, &head, length);
     let encoding = encoding.map_err(|reason| Error::Format { file: path.to_path_buf(), reason })?;

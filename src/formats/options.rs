@@ -1,0 +1,64 @@
+//! Choices of reading and writing.
+
+use std::path::PathBuf;
+
+use super::field::Field;
+
+/// How files are read.
+#[derive(Clone, Debug, Default)]
+pub struct ReadOptions {
+    /// Program in which CGNS files are parsed; default none, which parses them in this process.
+    ///
+    /// Some malformed CGNS files make the HDF5 library crash, hang or eat up the memory. Who reads files of strangers gives a
+    /// program here, which may be his own: it must call `cgns::serve_reader` with the second argument when its first is
+    /// `cgns::READER_SUBCOMMAND`, before anything else. It is run with limits of time and memory, and whatever happens to it is
+    /// an error here.
+    pub reader: Option<PathBuf>,
+}
+
+/// How files are written, where a format leaves a choice.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct WriteOptions<'a> {
+    /// Version of MSH files.
+    pub msh_version: Version,
+    /// Encoding of MSH files.
+    pub msh_encoding: Encoding,
+    /// VTU without the cells below the top dimension.
+    pub volume_only: bool,
+    /// Values to show, in VTU files.
+    pub fields: &'a [Field],
+}
+
+/// Versions of MSH files.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Version {
+    /// 4.1: nodes and elements in blocks by entity.
+    #[default]
+    V4_1,
+    /// 2.2: what older readers take; keeps no boundaries of entities and no node parameters.
+    V2_2,
+}
+
+impl Version {
+    /// All versions that are written.
+    pub const ALL: [Version; 2] = [Version::V4_1, Version::V2_2];
+
+    /// What a file of the version says of itself.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Version::V4_1 => "4.1",
+            Version::V2_2 => "2.2",
+        }
+    }
+}
+
+/// How the numbers of MSH files are written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Encoding {
+    /// As bytes, little-endian.
+    #[default]
+    Binary,
+    /// As text: larger and slower, for readers that take nothing else.
+    Ascii,
+}
