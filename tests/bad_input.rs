@@ -137,8 +137,12 @@ fn output_that_cannot_be_written() {
         assert!(needles.iter().all(|needle| told.contains(needle)), "{needles:?} are not in: {told}");
         assert_eq!(names_in(&out), [""; 0], "{told}");
     };
-    tried(&out.join("curved.stl"), &[], &["curved.stl", ".msh, .cgns, .vtu, .meshb or .mesh"]);
-    tried(&out.join("curved"), &[], &["curved", ".msh, .cgns, .vtu, .meshb or .mesh"]);
+    let written = sagitta::formats::REGISTRY.iter().filter(|format| format.writer.is_some());
+    let endings: Vec<String> = written.flat_map(|format| format.endings).map(|ending| format!(".{ending}")).collect();
+    for name in ["curved.stl", "curved"] {
+        let needles: Vec<&str> = [name].into_iter().chain(endings.iter().map(String::as_str)).collect();
+        tried(&out.join(name), &[], &needles);
+    }
     tried(&out.join("none/curved.msh"), &[], &["none/curved.msh", "No such file"]);
     tried(&out.join("curved.msh"), &["--report", &report.display().to_string()], &["none/report.json", "No such file"]);
 }
