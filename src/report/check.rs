@@ -76,7 +76,8 @@ fn orientation(normal: DVec3) -> Option<String> {
     let plane = Plane { point: DVec3::ZERO, normal };
     let largest = normal.abs().max_position();
     (!plane.is_along_axis()).then(|| {
-        let [x, y, z] = normal.to_array();
+        // What rounds to zero has no sign.
+        let [x, y, z] = normal.to_array().map(|x| if x.abs() < 5e-7 { 0.0 } else { x });
         format!(
             "most cells are numbered clockwise as seen from +{}; all are judged against the normal ({x:.6}, {y:.6}, {z:.6})",
             ["x", "y", "z"][largest]
