@@ -35,7 +35,7 @@ fn schemas_refuse_what_is_wrong() {
         "schema": "sagitta-check-2", "version": "0", "mesh": "m", "order": 2, "certified": true, "cells": [],
         "certificate": {
             "j_over_jc": {"lower": null, "upper": null}, "scaled_jacobian": {"lower": 0.5, "upper": 0.5}, "worst": [],
-        },
+        }, "notes": [],
     });
     assert_eq!(faults(&good), [""; 0]);
     let mut without = good.clone();
