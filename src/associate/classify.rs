@@ -1,5 +1,7 @@
 //! Where the association of a mesh comes from: a linkage file, its entity tags, or its geometry.
 
+use std::collections::BTreeMap;
+
 use cad::Model;
 
 use super::witnesses::combined;
@@ -75,6 +77,9 @@ pub fn classify(
     };
     // Faces of which the tags say nothing that holds are left to geometry.
     let mut inference = infer(mesh, boundary, model, &Tolerance::of(mesh));
+    if by_tags.is_err() && !is_usable(boundary, &inference) {
+        return Ok(by_tags?); // mesh and CAD of different sizes or positions may have some faces in common
+    }
     let Some((candidates, source)) = combined(&tags, &mut inference, mesh, boundary, model, max_offset) else {
         let mut classified = by_tags?;
         classified.inference = Some(inference);
@@ -87,4 +92,21 @@ pub fn classify(
     ));
     classified.inference = Some(inference);
     Ok(classified)
+}
+
+/// Where tags do not hold, geometry is used if at least this fraction of the faces of every patch that it covers is decided.
+const DECIDED: f64 = 0.9;
+
+/// Whether something was decided, and of every patch nearly all or nothing.
+fn is_usable(boundary: &Boundary, inference: &Inference) -> bool {
+    let mut counts: BTreeMap<_, [usize; 2]> = BTreeMap::new();
+    for face in &boundary.faces {
+        counts.entry(face.entity).or_default()[0] += 1;
+    }
+    for (face, _) in &inference.faces {
+        counts.entry(boundary.faces[*face].entity).or_default()[1] += 1;
+    }
+    let decided = |[all, open]: &[usize; 2]| *all - *open;
+    counts.values().any(|count| decided(count) > 0)
+        && counts.values().all(|count| decided(count) == 0 || decided(count) as f64 >= DECIDED * count[0] as f64)
 }
