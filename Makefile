@@ -77,7 +77,7 @@ bench: build ## benchmarks; minutes, not a test
 	cargo bench -p sagitta-cad --bench projection
 
 oracle: setup-build ## closest points beside OCCT's own searches and dense grids; SAGITTA_CAD=DIR adds foreign CAD; minutes
-	SAGITTA_ORACLE_QUERIES=125 cargo test -p sagitta-cad --release --test oracle -- --ignored --nocapture
+	SAGITTA_ORACLE_QUERIES=125 cargo test -p sagitta-cad --release --test suite oracle:: -- --ignored --nocapture
 
 table: build venv ## a table of the fixtures, curved and judged by other code; minutes
 	"$(SAGITTA_PYTHON)" tests/judge/table.py $(SAGITTA)
@@ -94,7 +94,7 @@ consumers: setup build ## curved meshes given to Gmsh, meshio, MFEM, PyFR, PyHOP
 	.venv-consumers/bin/python tests/consumers/consume.py $(SAGITTA) | tee $(TARGET)/consumers.md
 
 schema: ## write the JSON Schemas of the reports to docs/schema
-	cargo test --test schema --profile $(TEST_PROFILE) -- --ignored write
+	cargo test --test suite --profile $(TEST_PROFILE) schema::write -- --ignored
 
 figures: venv ## what Gmsh, meshio and VTK find in fixtures/samples, and in SAGITTA_SAMPLES=DIR
 	"$(SAGITTA_PYTHON)" tests/judge/figures.py fixtures/samples $(SAGITTA_SAMPLES) > $(TARGET)/figures.json

@@ -25,7 +25,7 @@ mod pieces;
 mod plane_tests;
 mod product;
 #[cfg(test)]
-#[path = "../../tests/common/random.rs"]
+#[path = "../../tests/suite/common/random.rs"]
 mod random;
 #[cfg(test)]
 #[allow(clippy::panic)]

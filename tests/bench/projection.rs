@@ -3,9 +3,9 @@
 //! `cargo bench -p sagitta-cad --bench projection [-- CASE]`. Ratios within one run mean something; digits move with the machine.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
-#[path = "../common/iges.rs"]
+#[path = "../suite/common/iges.rs"]
 mod iges;
-#[path = "../common/random.rs"]
+#[path = "../suite/common/random.rs"]
 mod random;
 
 use cad::{FaceId, Foot, Group, Hint, Kind, Model, ReadOptions};

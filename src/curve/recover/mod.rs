@@ -11,7 +11,7 @@
 //! can, and all nodes go back together. Otherwise it means the straight mesh: the wall goes back, and the volume is carried along as
 //! by the first perturbation, so that layers move whole. The torus at scale 0.5, whose prisms lean by up to 88 degrees off their own
 //! faces, is inverted at P3 after 20 sweeps; by way of P2 it then comes to the CAD with C_JAC 0.35, by way of the straight mesh with
-//! 0.08 (`tests/fallback.rs`).
+//! 0.08 (`tests/suite/fallback.rs`).
 
 pub mod backtrack;
 mod forward;

@@ -106,14 +106,15 @@ fn axes(mesh: &Mesh) -> usize {
     if mesh.dimension() == 2 && mesh.points().iter().all(|x| x.z.to_bits() == 0) { 2 } else { 3 }
 }
 
-/// Which nodes lie on which entities of a dimension, where they have parameters there; points need none.
+/// Which nodes lie on which entities of a dimension, where they have parameters there; points need none, but are written only where
+/// elements name them or other nodes have parameters: alone they tell nothing, and readers such as meshio do not know the section.
 fn on_geometry(mesh: &Mesh, dimension: u8) -> Option<Section<'_>> {
     let mut rows: BTreeMap<NodeId, (i32, Vec<f64>)> = BTreeMap::new();
     if dimension == 0 {
         for block in mesh.blocks().iter().filter(|block| block.cell == Cell::Point) {
             rows.extend(block.nodes.iter().map(|&node| (node, (block.entity.tag, Vec::new()))));
         }
-        let classified = mesh.node_entities().iter().enumerate();
+        let classified = mesh.node_entities().iter().enumerate().filter(|_| !mesh.node_parameters().is_empty());
         for (n, key) in classified.filter_map(|(n, key)| Some((n, (*key)?))).filter(|(_, key)| key.dimension == 0) {
             // All nodes of a mesh have numbers.
             rows.entry(NodeId::new(n).unwrap_or_default()).or_insert((key.tag, Vec::new()));

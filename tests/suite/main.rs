@@ -1,0 +1,43 @@
+//! The tests of the whole program: what it reads, writes, refuses and promises, one file a subject. They are one executable, as each of
+//! them would link everything anew.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, unreachable_pub)] // a program of its own
+
+#[macro_use]
+mod common;
+
+mod architecture;
+mod association;
+mod backtrack;
+mod bad_input;
+mod cgns;
+mod cli;
+mod coarse;
+mod curve;
+mod curve_layers;
+mod determinism;
+mod engines;
+mod fallback;
+mod fit;
+mod foreign_linkage;
+mod formats;
+mod fuzz_formats;
+mod gmf;
+mod link;
+mod partial;
+mod periodic;
+mod plane;
+mod project;
+mod real_linkage;
+mod registry;
+mod resume;
+mod samples;
+mod schema;
+mod sliding;
+mod sphere_order;
+mod stop;
+mod thin_edges;
+mod unit_and_place;
+mod validate;
+mod viscous_patches;
+mod without_libraries;
+mod zones;
