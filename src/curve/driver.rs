@@ -97,10 +97,10 @@ pub(super) fn drive(
 
     clock.step(Step::Certify);
     let proof = Proof::of(&level);
-    let Recovered { proof, off_cad } = if proof.holds() {
+    let Recovered { proof, off_cad } = if proof.holds() && smoothed.end.worst() >= settings.floor {
         Recovered { proof, off_cad: Vec::new() }
     } else {
-        let below = below.mesh(clock.observer);
+        let below = if proof.holds() { None } else { below.mesh(clock.observer) };
         let mut watch = |progress: Progress| clock.observer.progress(&progress);
         recover(&mut level, &mut smoothed, below.as_ref(), proof, &mut watch)
     };

@@ -201,7 +201,7 @@ impl<'a> Continuation<'a> {
     }
 }
 
-/// Takes a level that is inverted through recovery; whether it came out on the CAD, and proven.
+/// Takes a level that is inverted through recovery; whether it came out proven, and on the CAD but for released nodes.
 fn recovers(level: &mut Level, smoothed: &mut Smoothed, below: Option<&Below>, clock: &mut Clock) -> bool {
     let proof = Proof::of(level);
     if proof.holds() {
@@ -209,7 +209,7 @@ fn recovers(level: &mut Level, smoothed: &mut Smoothed, below: Option<&Below>, c
     }
     let mut watch = |progress: Progress| clock.observer.progress(&progress);
     let recovered = recover(level, smoothed, below, proof, &mut watch);
-    recovered.proof.holds() && recovered.off_cad.is_empty()
+    recovered.proof.holds() && level.wall.is_all_the_way()
 }
 
 /// Where the nodes are before the first sweep.

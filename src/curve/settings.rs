@@ -24,6 +24,9 @@ pub struct Settings {
     pub direct: bool,
     /// Layers of elements off curved walls that may be curved; `None` leaves it to the walls' displacement.
     pub curve_layers: Option<NonZeroUsize>,
+    /// Least costs, `C_WCN` and `C_JAC`, 0 to 1, for which wall faces stay on the CAD: where smoothing leaves an element below, the wall
+    /// nodes that make it so may leave the CAD. Default 0.1.
+    pub floor: f64,
     /// The smoother's settings.
     pub smoothing: smooth::Settings,
     /// A checkpoint file to go on from.
@@ -42,6 +45,7 @@ impl Settings {
             freeze_walls: false,
             direct: false,
             curve_layers: None,
+            floor: 0.1,
             smoothing: smooth::Settings::default(),
             resume: None,
         }

@@ -1,6 +1,6 @@
 //! State of the nodes on the boundary.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
@@ -35,8 +35,10 @@ pub struct OffCad {
 pub struct Wall {
     /// By node, up to the last on the boundary (all nodes where layers are limited); those after are inside the volume.
     nodes: Vec<WallNode>,
-    /// Nodes off the CAD.
+    /// Nodes off the CAD, on their way from the fallback mesh.
     off_cad: BTreeMap<usize, OffCad>,
+    /// Nodes that are not held on the CAD, but drawn to their place there.
+    released: BTreeSet<usize>,
     /// How many closest points were asked for to place nodes.
     pub queries: usize,
     /// How many of them are not proven to be the closest.
@@ -143,7 +145,24 @@ impl Wall {
     /// Whether every node is on the CAD.
     #[must_use]
     pub fn is_on_cad(&self) -> bool {
+        self.off_cad.is_empty() && self.released.is_empty()
+    }
+
+    /// Whether every node that is off the CAD is a released one.
+    #[must_use]
+    pub fn is_all_the_way(&self) -> bool {
         self.off_cad.is_empty()
+    }
+
+    /// Lets a node leave the CAD.
+    pub fn release(&mut self, node: usize) {
+        self.released.insert(node);
+    }
+
+    /// Whether a node may leave the CAD.
+    #[must_use]
+    pub fn is_released(&self, node: usize) -> bool {
+        self.released.contains(&node)
     }
 
     /// How far any node is on its way from the fallback mesh to the CAD; 1 on the CAD.
@@ -152,7 +171,7 @@ impl Wall {
         self.off_cad.get(&node).map_or(1.0, |off| off.fraction)
     }
 
-    /// Nodes off the CAD, rising, and how far each is on its way to it.
+    /// Nodes that were taken back, rising, and how far each is on its way to the CAD.
     pub fn off_cad(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         self.off_cad.iter().map(|(&node, off)| (node, off.fraction))
     }

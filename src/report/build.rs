@@ -14,7 +14,7 @@ use super::finite;
 use crate::associate::Classification;
 use crate::certify::{FaceFinding, Verdict};
 use crate::curve::layers::straight_elements;
-use crate::curve::recover::OffCadFace;
+use crate::curve::recover::{Departure, OffCadFace};
 use crate::curve::{Curved, Job, LowerOrder};
 use crate::element::{Cell, Order, Samples, basis};
 use crate::mesh::EntityKey;
@@ -160,11 +160,16 @@ fn off_cad(curved: &Curved, off: &OffCadFace) -> OffCadReport {
     let face = &curved.boundary.faces[off.face];
     let corners = &curved.boundary.corners[off.face];
     let middle: DVec3 = corners.iter().map(|n| curved.mesh.points()[n.index()]).sum::<DVec3>() / corners.len() as f64;
+    let (order, fraction) = match off.departure {
+        Departure::Released => (None, None),
+        Departure::Back { order, fraction } => (Some(order.get()), Some(fraction)),
+    };
     OffCadReport {
         element: curved.boundary.tag(off.face, &curved.mesh),
         entity: face.entity.to_string(),
-        order: off.order.get(),
-        fraction: off.fraction,
+        released: off.departure == Departure::Released,
+        order,
+        fraction,
         cad_distance: distance(curved, off.face),
         position: middle.to_array(),
     }

@@ -122,10 +122,12 @@ pub struct OffCadReport {
     pub element: u64,
     /// The mesh entity that it belongs to.
     pub entity: String,
-    /// What it went back towards: order 1 is the straight face, a higher one the face curved at that order.
-    pub order: usize,
-    /// The fraction of its displacement from there that is left, 0 to 1.
-    pub fraction: f64,
+    /// Whether nodes of it were released, and moved as little as the elements behind it ask; otherwise it was taken back.
+    pub released: bool,
+    /// Where it was taken back: towards what. Order 1 is the straight face, a higher one the face curved at that order.
+    pub order: Option<usize>,
+    /// Where it was taken back: the fraction of its displacement from there that is left, 0 to 1.
+    pub fraction: Option<f64>,
     /// Its largest distance from the CAD, at (3p)^2 samples.
     pub cad_distance: Option<f64>,
     /// Its middle.

@@ -3,6 +3,7 @@
 mod best;
 mod block;
 mod checkpoint;
+mod components;
 mod confirm;
 mod density;
 mod derivative;

@@ -40,13 +40,19 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    /// The patch of the elements that `active` names (rising), with every element's survey density.
-    pub(super) fn new(problem: &Problem, active: &[ElementId], density: &[u8], images: &[Image]) -> Patch {
+    /// The patch of the elements that `active` names (rising), with every element's survey density. `local` has an entry for each node
+    /// of the mesh, `u32::MAX`, before and after.
+    pub(super) fn new(
+        problem: &Problem,
+        active: &[ElementId],
+        density: &[u8],
+        images: &[Image],
+        local: &mut [u32],
+    ) -> Patch {
         let mut runs: Vec<Run> = Vec::new();
         let mut elements: Vec<ElementId> = active.to_vec();
         elements.sort_by_key(|&e| (problem.cell(e), density[e.index()], e));
-        let mut local = vec![u32::MAX; problem.node_count()];
-        let (mut nodes, mut slots) = (Vec::new(), Vec::<u32>::new());
+        let (mut nodes, mut slots) = (Vec::<NodeId>::new(), Vec::<u32>::new());
         for (place, &e) in elements.iter().enumerate() {
             let (cell, own, density) = (problem.cell(e), problem.nodes(e), density[e.index()]);
             match runs.last_mut() {
@@ -65,7 +71,8 @@ impl Patch {
         let incident = Incidence::new(nodes.len(), slots.iter().map(|&node| node as usize).zip(0..));
         let complete = |i: usize| incident.at(i).len() == problem.valence(nodes[i]);
         let mut movable: Vec<bool> = (0..nodes.len()).map(complete).collect();
-        let periodic = periodic(images, &local, &mut movable);
+        let periodic = periodic(images, local, &mut movable);
+        nodes.iter().for_each(|node| local[node.index()] = u32::MAX);
         let targets = nodes.iter().map(|n| problem.straight[n.index()]).collect();
         Patch { elements, runs, slots, nodes, movable, periodic, incident, targets }
     }

@@ -14,6 +14,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::best::Best;
+use super::components::components;
 use super::confirm::confirmed_costs;
 use super::density::Density;
 use super::descend::descend;
@@ -240,14 +241,28 @@ impl Run<'_, '_> {
         self.problem.ids().filter(|e| active[e.index()]).collect()
     }
 
-    /// One round: a survey dense enough, a descent, and what it gained.
+    /// One round: for each component a survey dense enough and a descent; and what it gained. Its sweeps are those of the component that
+    /// takes most.
     fn round(&mut self, active: &[ElementId], x: &mut [DVec3]) {
         let (before, first) = (self.standing(), self.sweeps);
-        self.densify(active, x);
-        let patch = Patch::new(self.problem, active, &self.density, self.constraint.images());
-        self.best.note(&patch, x, &self.costs);
-        self.descend(&patch, x);
-        self.survey(&patch.elements, x);
+        let images = self.constraint.images();
+        let mut local = vec![u32::MAX; self.problem.node_count()];
+        let mut last = first;
+        let progress = self.progress();
+        for own in components(self.problem, active, images) {
+            self.sweeps = first;
+            self.densify(&own, x);
+            let patch = Patch::new(self.problem, &own, &self.density, images, &mut local);
+            self.best.note(&patch, x, &self.costs);
+            self.descend(&patch, progress, x);
+            self.survey(&patch.elements, x);
+            last = last.max(self.sweeps);
+            if self.stopped {
+                break;
+            }
+        }
+        self.sweeps = last;
+        self.keep_best();
         self.pace.after(self.standing() - before, self.sweeps - first, self.settings.engine);
     }
 
@@ -313,13 +328,17 @@ impl Run<'_, '_> {
         [summary.c_wcn, summary.c_jac].map(|worst| (worst + FOCUS).min(self.settings.threshold))
     }
 
-    /// Takes the costs of changed elements, and keeps the state if it is the best.
+    /// Takes the costs of changed elements.
     fn survey(&mut self, elements: &[ElementId], x: &[DVec3]) {
         let closing = &self.surveys[self.surveys.len() - 1];
         let (own, level) = (elements.par_iter().copied(), self.settings.threshold);
         for (&e, cost) in elements.iter().zip(confirmed_costs(self.problem, closing, level, own, x)) {
             self.costs[e.index()] = cost;
         }
+    }
+
+    /// Keeps the state if it is the best.
+    fn keep_best(&mut self) {
         let summary = Summary::of(&self.costs);
         if summary.beats(self.best.summary) {
             self.best = Best::is_now(summary);
@@ -343,11 +362,12 @@ impl Run<'_, '_> {
     }
 
     /// Descends on a patch.
-    fn descend(&mut self, patch: &Patch, x: &mut [DVec3]) {
+    fn descend(&mut self, patch: &Patch, progress: Progress, x: &mut [DVec3]) {
         let stage = self.pace.stage;
         let alpha = self.settings.alpha.unwrap_or_else(|| quality::alpha(self.problem.order));
         let delta = |cost: f64| REGULARISATION * (LOW - cost).max(0.0);
-        let around = delta(self.lowest()).min(AROUND);
+        let lowest = patch.elements.iter().map(|e| stage.cost(&self.costs[e.index()])).fold(1.0, f64::min);
+        let around = delta(lowest).min(AROUND);
         let (shape, jacobian) = if stage == Stage::Shape { (1.0, 0.0) } else { (alpha, 1.0 - alpha) };
         let weights = Weights { shape, jacobian, density: Density { emphasis: EMPHASIS, delta: 0.0 } };
         let deltas = patch.elements.iter().map(|&e| delta(stage.cost(&self.costs[e.index()])).max(around)).collect();
@@ -361,7 +381,7 @@ impl Run<'_, '_> {
         };
         let anchors = (0..patch.nodes.len()).filter_map(anchored).collect();
         let objective = Objective { patch, kernels, cuts, deltas, weights, anchors };
-        let progress = self.progress(patch);
+        let progress = self.progress_on(patch, progress);
         let left = self.pace.round.min(self.settings.max_sweeps - self.sweeps);
         let first = self.sweeps;
         let (watch, stopped) = (&mut *self.watch, &mut self.stopped);
@@ -379,23 +399,30 @@ impl Run<'_, '_> {
         }
     }
 
-    fn progress(&self, patch: &Patch) -> Progress {
+    /// What is told of the whole mesh between two rounds.
+    fn progress(&self) -> Progress {
         let stage = self.pace.stage;
-        let cost = |e: ElementId| stage.cost(&self.costs[e.index()]);
-        let worst = |&a: &ElementId, &b: &ElementId| cost(a).total_cmp(&cost(b));
-        let element = patch.elements.iter().copied().min_by(worst).unwrap_or_default();
-        let nodes = self.problem.nodes(element);
-        let middle: DVec3 = nodes.iter().map(|n| self.problem.straight[n.index()]).sum();
         let summary = Summary::of(&self.costs);
         Progress {
             stage: if stage == Stage::Shape { 1 } else { 2 },
             sweep: self.sweeps,
             max_sweeps: self.settings.max_sweeps,
-            active_nodes: patch.movable.iter().filter(|&&m| m).count(),
-            worst: cost(element),
+            active_nodes: 0,
+            worst: self.lowest(),
             costs: [summary.c_wcn, summary.c_jac],
-            at: middle / nodes.len() as f64,
+            at: DVec3::ZERO,
             inverted: self.costs.iter().filter(|c| stage.cost(c) <= 0.0).count(),
         }
+    }
+
+    /// The same, of a patch.
+    fn progress_on(&self, patch: &Patch, whole: Progress) -> Progress {
+        let cost = |e: ElementId| self.pace.stage.cost(&self.costs[e.index()]);
+        let worst = |&a: &ElementId, &b: &ElementId| cost(a).total_cmp(&cost(b));
+        let element = patch.elements.iter().copied().min_by(worst).unwrap_or_default();
+        let nodes = self.problem.nodes(element);
+        let middle: DVec3 = nodes.iter().map(|n| self.problem.straight[n.index()]).sum();
+        let active_nodes = patch.movable.iter().filter(|&&m| m).count();
+        Progress { active_nodes, worst: cost(element), at: middle / nodes.len() as f64, ..whole }
     }
 }

@@ -46,7 +46,9 @@ impl Summary {
         Summary { c_wcn: worst(|c| c.c_wcn), c_jac: worst(|c| c.c_jac), inverted }
     }
 
-    fn worst(self) -> f64 {
+    /// The smaller of the two.
+    #[must_use]
+    pub fn worst(self) -> f64 {
         self.c_wcn.min(self.c_jac)
     }
 

@@ -84,6 +84,9 @@ pub(in crate::cli) struct Options {
     /// Divisions of an edge at which costs are surveyed in the end, in multiples of the order
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u8).range(1..=16))]
     survey_factor: u8,
+    /// Least costs for which walls stay on the CAD: where an element stays below, the wall nodes that make it so may leave the CAD
+    #[arg(long, value_name = "0..1", default_value_t = 0.1, value_parser = fraction)]
+    floor: f64,
     /// Threads to use [default: all cores]
     #[arg(long, value_name = "N")]
     threads: Option<NonZeroUsize>,
@@ -151,6 +154,7 @@ impl Options {
             freeze_walls: self.freeze_walls,
             direct: self.direct,
             curve_layers: self.curve_layers.0,
+            floor: self.floor,
             smoothing: smooth::Settings {
                 threshold: self.threshold,
                 alpha: self.alpha,

@@ -26,7 +26,7 @@ const ENOUGH: f64 = 0.3;
 impl Recovery<'_, '_> {
     /// Takes the walls forward as far as the mesh stays proven.
     pub(super) fn forward(&mut self) {
-        if !self.proof.holds() || self.level.wall.is_on_cad() {
+        if !self.proof.holds() || self.level.wall.is_all_the_way() {
             return;
         }
         let settings = &self.level.case.settings.smoothing;
@@ -70,15 +70,17 @@ impl Recovery<'_, '_> {
         let _ = self.attempt(|recovery| recovery.smooth_again(&settings.smoothing));
     }
 
-    /// Does what is asked, or, where the mesh is not proven valid after it, nothing; then the elements that fail are returned.
+    /// Does what is asked, or, where the mesh is not proven valid after it or a cost falls below the floor, nothing; then the elements
+    /// that fail are returned.
     fn attempt(&mut self, attempt: impl FnOnce(&mut Self)) -> Result<(), Vec<ElementId>> {
         let (curved, wall) = (self.level.curved.clone(), self.level.wall.clone());
         let (smoothed, proof) = (self.smoothed.clone(), self.proof.clone());
+        let floor = self.level.case.settings.floor.min(smoothed.end.worst());
         attempt(self);
-        if self.proof.holds() {
+        let failing = self.below(floor);
+        if failing.is_empty() && self.proof.holds() {
             return Ok(());
         }
-        let failing = self.proof.failing(self.level);
         self.level.curved = curved;
         self.level.wall = wall;
         self.proof = proof;

@@ -17,7 +17,8 @@ pub mod backtrack;
 mod forward;
 mod off_cad;
 mod recovery;
+mod release;
 mod spot;
 
-pub use off_cad::{OffCadFace, off_cad_faces};
+pub use off_cad::{Departure, OffCadFace, off_cad_faces};
 pub use recovery::{Recovered, recover};

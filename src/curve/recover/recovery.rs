@@ -53,8 +53,10 @@ pub fn recover(
     let fallback = fallback(level, below);
     let order = fallback.order;
     let mut recovery = Recovery { level, smoothed, proof, fallback, watch };
+    recovery.again();
+    recovery.release();
     recovery.back();
-    let untouched = recovery.proof.holds() && recovery.level.wall.is_on_cad();
+    let untouched = recovery.proof.holds() && recovery.level.wall.is_all_the_way();
     recovery.backtrack();
     recovery.forward();
     let Recovery { level, smoothed, proof, .. } = recovery;
@@ -62,7 +64,7 @@ pub fn recover(
         let problem = Problem::new(level.mesh(), level.straight());
         smoothed.survey(&problem, &level.curved, level.case.settings.smoothing.survey_factor);
     }
-    let off_cad = off_cad_faces(level, order, |n| level.wall.fraction(n));
+    let off_cad = off_cad_faces(level, order);
     Recovered { off_cad, proof }
 }
 
@@ -84,24 +86,29 @@ fn fallback(level: &mut Level, below: Option<&Below>) -> Fallback {
 }
 
 impl Recovery<'_, '_> {
-    /// Smoothing again, and taking back around what fails.
-    fn back(&mut self) {
+    /// Settings of a smoothing that looks closer.
+    pub(super) fn closer(&self) -> smooth::Settings {
         let own = &self.level.case.settings.smoothing;
-        let settings = smooth::Settings {
-            survey_factor: 2 * own.survey_factor,
-            max_sweeps: SWEEPS.min(own.max_sweeps),
-            ..own.clone()
-        };
-        for round in 0..=ROUNDS {
+        let max_sweeps = SWEEPS.min(own.max_sweeps);
+        smooth::Settings { survey_factor: 2 * own.survey_factor, max_sweeps, ..own.clone() }
+    }
+
+    /// Smooths again where elements fail; smoothing does not look at folds of faces.
+    fn again(&mut self) {
+        if !self.proof.certificate.holds() && !self.smoothed.stopped {
+            self.smooth_again(&self.closer());
+        }
+    }
+
+    /// Takes back around what fails.
+    fn back(&mut self) {
+        let settings = self.closer();
+        for round in 1..=ROUNDS {
             let failing = self.proof.failing(self.level);
             if failing.is_empty() || self.smoothed.stopped {
                 break; // a face may fail that no element stands on
             }
-            if round > 0 {
-                self.take_back(round, &failing);
-            } else if self.proof.certificate.holds() {
-                continue; // smoothing does not look at folds of faces
-            }
+            self.take_back(round, &failing);
             self.smooth_again(&settings);
         }
     }

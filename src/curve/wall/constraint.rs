@@ -21,6 +21,8 @@ const SLIDE: f64 = 1e-3;
 /// The same for a linear node; fraction of its shortest edge. All edges and faces around it follow, and with the fraction of the others the
 /// weeble at P3 ended with C_JAC 0.73 in place of 0.80.
 const SLIDE_LINEAR: f64 = 1e-4;
+/// How far a released node may be from its place on the CAD before it costs as much; fraction of its displacement.
+const LEAVE: f64 = 0.1;
 
 /// Keeps boundary nodes on what they are classified on.
 pub struct CadConstraint<'a> {
@@ -68,7 +70,7 @@ impl Constraint for CadConstraint<'_> {
         if frozen || self.wall.fraction(n) < 1.0 || self.held.contains(&node) {
             return Freedom::Fixed;
         }
-        if classification == Classification::Free {
+        if classification == Classification::Free || self.wall.is_released(n) {
             return Freedom::Space;
         }
         if let Some(plane) = association.plane_of(classification) {
@@ -93,6 +95,9 @@ impl Constraint for CadConstraint<'_> {
 
     fn restrict(&self, node: NodeId, from: DVec3, wish: DVec3) -> DVec3 {
         let classification = self.wall.classification(node.index());
+        if self.wall.is_released(node.index()) {
+            return wish;
+        }
         if let Some(plane) = self.case.association.plane_of(classification) {
             return plane.closest(wish);
         }
@@ -121,6 +126,10 @@ impl Constraint for CadConstraint<'_> {
             .filter(|_| self.case.association.plane_of(classification).is_none())?;
         let size = self.wall.size(n)?;
         let fraction = if n < self.linear_nodes { SLIDE_LINEAR } else { SLIDE };
-        Some(Anchor { place: self.straight[n] + self.wall.displacement(n), slack: fraction * size })
+        let mut slack = fraction * size;
+        if self.wall.is_released(n) {
+            slack = slack.max(LEAVE * self.wall.displacement(n).length());
+        }
+        Some(Anchor { place: self.straight[n] + self.wall.displacement(n), slack })
     }
 }

@@ -94,17 +94,16 @@ impl Report {
         }
         writeln!(f, "off the CAD: {} boundary faces, so that all elements are valid", self.off_cad.len())?;
         for face in self.off_cad.iter().take(LISTED) {
-            let percent = 100.0 * face.fraction;
-            let base = match face.order {
-                1 => "the straight face".to_owned(),
-                order => format!("the face of P{order}"),
+            let way = match (face.order, face.fraction) {
+                (Some(order), Some(fraction)) => {
+                    let base = if order == 1 { "the straight face".to_owned() } else { format!("the face of P{order}") };
+                    format!("{:.0} % of the way from {base} to the CAD", 100.0 * fraction)
+                }
+                _ => "released".to_owned(),
             };
             let far = face.cad_distance.map_or_else(String::new, |d| format!("up to {d:.2e} off, "));
             let (element, entity, at) = (face.element, &face.entity, position(face.position));
-            writeln!(
-                f,
-                "  face {element} of {entity}: {far}{percent:.0} % of the way from {base} to the CAD, near {at}"
-            )?;
+            writeln!(f, "  face {element} of {entity}: {far}{way}, near {at}")?;
         }
         Ok(())
     }
