@@ -47,6 +47,7 @@ pub mod proof;
 pub mod recover;
 mod settings;
 mod smoothing;
+mod start;
 mod trace;
 pub mod wall;
 pub mod wall_state;

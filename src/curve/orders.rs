@@ -21,22 +21,18 @@
 //!
 //! The paper's engine begins at the order itself, as the paper has it, and so does `--direct`.
 
-use glam::DVec3;
-use rayon::prelude::*;
-
 use super::below::Below;
 use super::checkpoint::{Found, Work};
 use super::error::Error;
 use super::layers::leave_straight_beyond;
 use super::level::{Case, Level};
 use super::observer::{Clock, Observer, Relay, Step};
-use super::perturb::perturb;
 use super::proof::Proof;
 use super::recover::recover;
 use super::smoothing::smooth_level;
+use super::start::start;
 use super::wall::fit::fit;
 use super::wall::project;
-use crate::associate::Classification;
 use crate::element::Order;
 use crate::mesh::Mesh;
 use crate::mesh::elevate::elevate;
@@ -210,29 +206,4 @@ fn recovers(level: &mut Level, smoothed: &mut Smoothed, below: Option<&Below>, c
     let mut watch = |progress: Progress| clock.observer.progress(&progress);
     let recovered = recover(level, smoothed, below, proof, &mut watch);
     recovered.proof.holds() && level.wall.is_all_the_way()
-}
-
-/// Where the nodes are before the first sweep.
-fn start(level: &Level, below: Option<&Below>) -> Vec<DVec3> {
-    let Some(below) = below else {
-        let mut positions = perturb(level, level.wall.displacements());
-        level.periodic.apply(&mut positions);
-        return positions;
-    };
-    let raised = below.raised(level.mesh());
-    let mut rest = level.wall.displacements();
-    rest.par_iter_mut().zip(&raised).enumerate().for_each(|(n, (displacement, raised))| {
-        *displacement = if level.plane_of(n).is_some() { DVec3::ZERO } else { *displacement - *raised };
-    });
-    let mut positions = perturb(level, rest);
-    let frozen = |n: usize| level.case.settings.freeze_linear && n < level.elevated.linear_nodes;
-    positions.par_iter_mut().zip(&raised).enumerate().for_each(|(n, (position, raised))| {
-        *position = match (level.wall.classification(n), level.plane_of(n).filter(|_| !frozen(n))) {
-            (Classification::Free, _) => *position + *raised,
-            (_, Some(plane)) => plane.closest(*position + *raised),
-            (_, None) => level.straight()[n] + level.wall.displacement(n),
-        };
-    });
-    level.periodic.apply(&mut positions);
-    positions
 }

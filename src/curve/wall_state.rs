@@ -159,6 +159,11 @@ impl Wall {
         self.released.insert(node);
     }
 
+    /// Nodes that may leave the CAD, rising.
+    pub fn released(&self) -> impl Iterator<Item = usize> + '_ {
+        self.released.iter().copied()
+    }
+
     /// Whether a node may leave the CAD.
     #[must_use]
     pub fn is_released(&self, node: usize) -> bool {

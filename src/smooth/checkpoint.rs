@@ -38,13 +38,13 @@ impl Checkpoint<'_> {
     /// # Errors
     /// Those of `out`.
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
-        let Pace { stage, idle, low_rings, focused, round } = self.pace;
+        let Pace { stage, idle, low_rings, focused, round, spent } = self.pace;
         out.write_all(&[u8::from(stage == Stage::Full), u8::from(focused)])?;
         let Summary { c_wcn, c_jac, inverted } = self.start;
         for cost in [c_wcn, c_jac] {
             out.write_all(&cost.to_le_bytes())?;
         }
-        for number in [inverted, idle, low_rings, round, self.sweeps] {
+        for number in [inverted, idle, low_rings, round, spent, self.sweeps] {
             out.write_all(&(number as u64).to_le_bytes())?;
         }
         out.write_all(&self.density)?;
@@ -69,8 +69,8 @@ impl Checkpoint<'_> {
         let [c_wcn, c_jac] = [f64::from_le_bytes(array(input)?), f64::from_le_bytes(array(input)?)];
         let mut number = || array(input).map(|bytes| u64::from_le_bytes(bytes) as usize);
         let start = Summary { c_wcn, c_jac, inverted: number()? };
-        let (idle, low_rings, round) = (number()?, number()?, number()?);
-        let pace = Pace { stage, idle, low_rings, focused: focused == 1, round };
+        let (idle, low_rings, round, spent) = (number()?, number()?, number()?, number()?);
+        let pace = Pace { stage, idle, low_rings, focused: focused == 1, round, spent };
         let sweeps = number()?;
         let mut density = vec![0; elements];
         input.read_exact(&mut density)?;

@@ -107,11 +107,13 @@ pub struct Anchor {
     pub place: DVec3,
     /// Distance that costs as much as one element at its worst shape.
     pub slack: f64,
+    /// Whether the slack grows where nodes on walls hold back the worst elements.
+    pub loosens: bool,
 }
 
 impl Anchor {
-    /// The same spring with so many times the slack.
+    /// The same spring with so many times the slack, if it loosens.
     fn loosened(self, looseness: f64) -> Anchor {
-        Anchor { slack: self.slack * looseness, ..self }
+        Anchor { slack: if self.loosens { self.slack * looseness } else { self.slack }, ..self }
     }
 }

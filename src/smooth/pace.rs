@@ -12,6 +12,12 @@ pub(super) const MOST_RINGS: usize = 8;
 /// Idle rounds after which a focused stage ends.
 pub(super) const PATIENCE: usize = 4;
 
+/// A sweep over few of the mesh's nodes counts as less than one, at least as one part in so many: what is worth going on with is not to
+/// end because of sweeps that cost next to nothing.
+const QUARTERS: usize = 4;
+/// A sweep over one node in so many counts as a whole one.
+const MANY: f64 = 20.0;
+
 /// What a stage works on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Stage {
@@ -33,6 +39,8 @@ pub(crate) struct Pace {
     pub(crate) focused: bool,
     /// Most sweeps of the next round.
     pub(crate) round: usize,
+    /// What the sweeps so far come to, in quarters of a sweep over a large part of the mesh.
+    pub(crate) spent: usize,
 }
 
 impl Stage {
@@ -43,9 +51,25 @@ impl Stage {
 }
 
 impl Pace {
+    /// That of the next stage.
+    pub(super) fn next(self, engine: Engine) -> Pace {
+        Pace { spent: self.spent, ..Pace::new(Stage::Full, engine) }
+    }
+
+    /// Takes sweeps into account that moved this many of the mesh's nodes.
+    pub(super) fn spend(&mut self, sweeps: usize, active: usize, nodes: usize) {
+        let share = MANY * active as f64 / nodes.max(1) as f64;
+        self.spent += sweeps * ((QUARTERS as f64 * share).ceil() as usize).clamp(1, QUARTERS);
+    }
+
+    /// Sweeps that are left of so many.
+    pub(super) fn left(self, max_sweeps: usize) -> usize {
+        (QUARTERS * max_sweeps).saturating_sub(self.spent).div_ceil(QUARTERS)
+    }
+
     /// That of a stage that begins.
     pub(super) fn new(stage: Stage, engine: Engine) -> Pace {
-        Pace { stage, idle: 0, low_rings: RINGS, focused: false, round: *engine.rounds().start() }
+        Pace { stage, idle: 0, low_rings: RINGS, focused: false, round: *engine.rounds().start(), spent: 0 }
     }
 
     /// After a round: where it gained next to nothing and its descent was cut off, the next one is longer.

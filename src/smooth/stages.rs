@@ -138,7 +138,7 @@ impl Run<'_, '_> {
             if self.pace.stage == Stage::Full {
                 break;
             }
-            self.pace = Pace::new(Stage::Full, self.settings.engine);
+            self.pace = self.pace.next(self.settings.engine);
             self.go_back(x);
         }
     }
@@ -215,7 +215,7 @@ impl Run<'_, '_> {
     }
 
     fn goes_on(&self) -> bool {
-        !self.stopped && self.sweeps < self.settings.max_sweeps
+        !self.stopped && self.pace.left(self.settings.max_sweeps) > 0
     }
 
     /// Elements with a cost below its level (`C_WCN`, `C_JAC`), and rings of elements around them.
@@ -247,7 +247,7 @@ impl Run<'_, '_> {
         let (before, first) = (self.standing(), self.sweeps);
         let images = self.constraint.images();
         let mut local = vec![u32::MAX; self.problem.node_count()];
-        let mut last = first;
+        let (mut last, mut moved) = (first, 0);
         let progress = self.progress();
         for own in components(self.problem, active, images) {
             self.sweeps = first;
@@ -257,11 +257,13 @@ impl Run<'_, '_> {
             self.descend(&patch, progress, x);
             self.survey(&patch.elements, x);
             last = last.max(self.sweeps);
+            moved += patch.movable.iter().filter(|&&m| m).count();
             if self.stopped {
                 break;
             }
         }
         self.sweeps = last;
+        self.pace.spend(last - first, moved, self.problem.node_count());
         self.keep_best();
         self.pace.after(self.standing() - before, self.sweeps - first, self.settings.engine);
     }
@@ -382,7 +384,7 @@ impl Run<'_, '_> {
         let anchors = (0..patch.nodes.len()).filter_map(anchored).collect();
         let objective = Objective { patch, kernels, cuts, deltas, weights, anchors };
         let progress = self.progress_on(patch, progress);
-        let left = self.pace.round.min(self.settings.max_sweeps - self.sweeps);
+        let left = self.pace.round.min(self.pace.left(self.settings.max_sweeps));
         let first = self.sweeps;
         let (watch, stopped) = (&mut *self.watch, &mut self.stopped);
         let mut local: Vec<DVec3> = patch.nodes.iter().map(|n| x[n.index()]).collect();
@@ -406,7 +408,7 @@ impl Run<'_, '_> {
         Progress {
             stage: if stage == Stage::Shape { 1 } else { 2 },
             sweep: self.sweeps,
-            max_sweeps: self.settings.max_sweeps,
+            max_sweeps: self.sweeps + self.pace.left(self.settings.max_sweeps),
             active_nodes: 0,
             worst: self.lowest(),
             costs: [summary.c_wcn, summary.c_jac],

@@ -36,6 +36,8 @@ pub(super) struct Recovery<'l, 'a> {
     pub(super) smoothed: &'l mut Smoothed,
     /// What is proven of the level as it is.
     pub(super) proof: Proof,
+    /// The curved mesh of the order below, where there is one.
+    pub(super) below: Option<&'l Below>,
     /// Where walls go back to.
     pub(super) fallback: Fallback,
     pub(super) watch: &'l mut dyn Watch,
@@ -43,16 +45,17 @@ pub(super) struct Recovery<'l, 'a> {
 
 /// Makes a smoothed level valid; `proof` is that of the level as it is and does not hold, `below` the curved mesh of the order below,
 /// where there is one.
-pub fn recover(
-    level: &mut Level,
-    smoothed: &mut Smoothed,
-    below: Option<&Below>,
+pub fn recover<'l>(
+    level: &'l mut Level,
+    smoothed: &'l mut Smoothed,
+    below: Option<&'l Below>,
     proof: Proof,
-    watch: &mut dyn Watch,
+    watch: &'l mut dyn Watch,
 ) -> Recovered {
     let fallback = fallback(level, below);
     let order = fallback.order;
-    let mut recovery = Recovery { level, smoothed, proof, fallback, watch };
+    let mut recovery = Recovery { level, smoothed, proof, below, fallback, watch };
+    recovery.dbg("begin");
     recovery.again();
     recovery.release();
     recovery.back();
@@ -121,6 +124,13 @@ impl Recovery<'_, '_> {
         self.smoothed.costs = again.costs;
         self.smoothed.end = again.end;
         self.proof = Proof::of(self.level);
+        self.dbg("smoothed");
+    }
+
+    pub(super) fn dbg(&self, what: &str) {
+        let f = self.proof.failing(self.level);
+        let b = self.below(0.1);
+        eprintln!("{what}: failing {} {:?} walls {} below .1 {} {:?}; released {} off {}; wcn {:.4} jac {:.4} sweeps {}", f.len(), &f[..f.len().min(6)], self.proof.walls.failures.len(), b.len(), &b[..b.len().min(6)], (0..self.level.wall.len()).filter(|&n| self.level.wall.is_released(n)).count(), self.level.wall.off_cad().count(), self.smoothed.end.c_wcn, self.smoothed.end.c_jac, self.smoothed.sweeps);
     }
 
     /// Takes the displacement back around the elements that fail.
@@ -164,12 +174,18 @@ impl Recovery<'_, '_> {
                 self.level.curved[n] = position;
             }
         }
-        if let Some(before) = carried {
-            let after = self.carried();
-            for n in 0..after.len() {
-                if !self.level.on_curved_wall(n) {
-                    self.level.curved[n] += after[n] - before[n];
-                }
+        match carried {
+            Some(before) => self.carry_on(&before),
+            None => self.level.periodic.apply(&mut self.level.curved),
+        }
+    }
+
+    /// Moves the nodes off curved walls by what the walls' displacement carries them farther than `before`.
+    pub(super) fn carry_on(&mut self, before: &[DVec3]) {
+        let after = self.carried();
+        for n in 0..after.len() {
+            if !self.level.on_curved_wall(n) {
+                self.level.curved[n] += after[n] - before[n];
             }
         }
         self.level.periodic.apply(&mut self.level.curved);

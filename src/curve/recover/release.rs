@@ -4,13 +4,13 @@
 //! common corner `det J` goes to zero, and its sign is that of the wall's curvature. To free the one node between the ends of the edge
 //! that the two faces share is enough: it is drawn back to its place by a spring, and the smoother finds the least it must give.
 
+use glam::DVec3;
+
 use super::recovery::Recovery;
 use crate::associate::Classification;
+use crate::curve::start::start;
+use crate::element::interior_start;
 use crate::mesh::{Element, ElementId};
-use crate::smooth;
-
-/// Costs good enough for elements beside released nodes: what is asked beyond it takes walls farther off the CAD.
-const ENOUGH: f64 = 0.4;
 
 /// Which wall nodes of an element that fails are released, none of them a linear one; each goes where the one before was not enough.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,17 +23,24 @@ enum Reach {
     Around,
 }
 
+/// The nodes of a boundary face.
+struct FaceNodes {
+    nodes: Vec<usize>,
+    /// From where on they lie inside the face.
+    inside: usize,
+}
+
 impl Recovery<'_, '_> {
     /// Releases wall nodes at the elements that fail or are below the floor.
     pub(super) fn release(&mut self) {
-        let closer = self.closer();
-        let settings = smooth::Settings { threshold: closer.threshold.min(ENOUGH), ..closer };
+        let settings = self.level.case.settings.smoothing.clone();
         for reach in [Reach::SharedEdge, Reach::Element, Reach::Around] {
             let poor = self.below(self.level.case.settings.floor);
             if poor.is_empty() || self.smoothed.stopped {
                 break;
             }
             if self.release_at(&poor, reach) {
+                self.begin_anew();
                 self.smooth_again(&settings);
             }
         }
@@ -64,6 +71,18 @@ impl Recovery<'_, '_> {
         !nodes.is_empty()
     }
 
+    /// Begins the order anew, released nodes where they are in the fallback mesh: they come towards the CAD from a valid mesh, not from
+    /// one that was bent to make room for what cannot be.
+    fn begin_anew(&mut self) {
+        let released: Vec<usize> = self.level.wall.released().collect();
+        let places: Vec<DVec3> = released.iter().map(|&n| self.level.wall.displacement(n)).collect();
+        for &n in &released {
+            self.level.wall.displace(n, self.fallback.positions[n] - self.level.straight()[n]);
+        }
+        self.level.curved = start(self.level, self.below);
+        released.iter().zip(places).for_each(|(&n, place)| self.level.wall.displace(n, place));
+    }
+
     /// Whether a node can be released: one on a curved wall that is not a linear node.
     fn releasable(&self, node: usize, curves: bool) -> bool {
         let inside = |classification| match classification {
@@ -80,12 +99,7 @@ impl Recovery<'_, '_> {
     fn mark(&self, element: ElementId, reach: Reach, marked: &mut [bool]) {
         let own = self.level.mesh().cells().get(element);
         if reach == Reach::SharedEdge {
-            let faces = self.wall_faces(&own);
-            let mut nodes: Vec<usize> = faces.iter().flat_map(|face| face.iter().copied()).collect();
-            nodes.sort_unstable();
-            let shared = nodes.windows(2).filter(|pair| pair[0] == pair[1] && self.releasable(pair[0], false));
-            shared.for_each(|pair| marked[pair[0]] = true);
-            return;
+            return self.mark_shared(&self.wall_faces(&own), marked);
         }
         let mut found = false;
         for n in own.nodes.iter().map(|n| n.index()).filter(|&n| self.releasable(n, reach == Reach::Around)) {
@@ -97,15 +111,33 @@ impl Recovery<'_, '_> {
         }
     }
 
-    /// Nodes of an element's faces on curved walls.
-    fn wall_faces(&self, own: &Element) -> Vec<Vec<usize>> {
+    /// Marks the nodes that two of some wall faces share, and those inside these faces, which are off the CAD then anyway.
+    fn mark_shared(&self, faces: &[FaceNodes], marked: &mut [bool]) {
+        for (k, one) in faces.iter().enumerate() {
+            for other in &faces[..k] {
+                let common = one.nodes.iter().filter(|n| other.nodes.contains(n));
+                let common: Vec<usize> = common.copied().filter(|&n| self.releasable(n, false)).collect();
+                if !common.is_empty() {
+                    let inside = one.nodes[one.inside..].iter().chain(&other.nodes[other.inside..]);
+                    common.iter().chain(inside).for_each(|&n| marked[n] = true);
+                }
+            }
+        }
+    }
+
+    /// An element's faces on curved walls.
+    fn wall_faces(&self, own: &Element) -> Vec<FaceNodes> {
         let (case, mesh) = (self.level.case, self.level.mesh());
         let on_wall = |face: &usize| {
             let classification = case.association.faces[*face];
             matches!(classification, Classification::Surface(_)) && case.association.plane_of(classification).is_none()
         };
         let faces = own.sides().filter_map(|side| case.boundary.face_of(side)).filter(on_wall);
-        faces.map(|face| case.boundary.nodes(face, mesh).iter().map(|n| n.index()).collect()).collect()
+        let nodes = |face: usize| FaceNodes {
+            nodes: case.boundary.nodes(face, mesh).iter().map(|n| n.index()).collect(),
+            inside: interior_start(case.boundary.faces[face].cell, mesh.order()),
+        };
+        faces.map(nodes).collect()
     }
 
     /// Marks the wall node nearest to each node of an element off the wall.

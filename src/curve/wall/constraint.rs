@@ -6,6 +6,7 @@ use cad::{EntityId, Evaluation, Foot};
 use glam::DVec3;
 use rustc_hash::FxHashSet;
 
+use super::tight::tight_nodes;
 use crate::associate::Classification;
 use crate::curve::level::Case;
 use crate::curve::periodic::PeriodicConstraint;
@@ -23,6 +24,8 @@ const SLIDE: f64 = 1e-3;
 const SLIDE_LINEAR: f64 = 1e-4;
 /// How far a released node may be from its place on the CAD before it costs as much; fraction of its displacement.
 const LEAVE: f64 = 0.1;
+/// How much farther than others the nodes at tight corners may slide.
+const AT_TIGHT_CORNERS: f64 = 30.0;
 
 /// Keeps boundary nodes on what they are classified on.
 pub struct CadConstraint<'a> {
@@ -32,6 +35,8 @@ pub struct CadConstraint<'a> {
     wall: &'a Wall,
     periodic: &'a PeriodicConstraint,
     held: FxHashSet<NodeId>,
+    /// Nodes at tight corners.
+    tight: FxHashSet<NodeId>,
 }
 
 impl<'a> CadConstraint<'a> {
@@ -54,7 +59,8 @@ impl<'a> CadConstraint<'a> {
         let unlike = periodic.images().iter().filter(|image| kind(image.node) != kind(image.of));
         let held = unlike.flat_map(|image| [image.node, image.of]).collect();
         let (straight, linear_nodes) = (elevated.mesh.points(), elevated.linear_nodes);
-        CadConstraint { case, straight, linear_nodes, wall, periodic, held }
+        let tight = tight_nodes(case, elevated, wall);
+        CadConstraint { case, straight, linear_nodes, wall, periodic, held, tight }
     }
 
     fn foot(&self, classification: Classification, x: DVec3) -> Option<Foot> {
@@ -127,9 +133,13 @@ impl Constraint for CadConstraint<'_> {
         let size = self.wall.size(n)?;
         let fraction = if n < self.linear_nodes { SLIDE_LINEAR } else { SLIDE };
         let mut slack = fraction * size;
-        if self.wall.is_released(n) {
+        if self.tight.contains(&node) {
+            slack *= AT_TIGHT_CORNERS;
+        }
+        let released = self.wall.is_released(n);
+        if released {
             slack = slack.max(LEAVE * self.wall.displacement(n).length());
         }
-        Some(Anchor { place: self.straight[n] + self.wall.displacement(n), slack })
+        Some(Anchor { place: self.straight[n] + self.wall.displacement(n), slack, loosens: !released })
     }
 }

@@ -3,6 +3,7 @@
 mod constraint;
 pub mod fit;
 mod project;
+mod tight;
 
 pub use constraint::CadConstraint;
 pub use project::project;
