@@ -7,7 +7,7 @@ use super::settings::Settings;
 use super::wall_state::Wall;
 use crate::associate::{Association, Classification};
 use crate::mesh::elevate::Elevated;
-use crate::mesh::{Boundary, Mesh, NodeId, Plane};
+use crate::mesh::{Boundary, Mesh, Plane};
 
 /// What is the same at every order.
 #[derive(Clone, Copy, Debug)]
@@ -66,8 +66,8 @@ impl<'a> Level<'a> {
 
     /// Where the wall's displacement puts a boundary node.
     #[must_use]
-    pub fn displaced(&self, node: NodeId) -> DVec3 {
-        self.straight()[node.index()] + self.wall.displacement(node.index())
+    pub fn displaced(&self, node: usize) -> DVec3 {
+        self.straight()[node] + self.wall.displacement(node)
     }
 
     /// The plane that holds a node, if one does.

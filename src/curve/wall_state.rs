@@ -159,6 +159,11 @@ impl Wall {
         self.released.insert(node);
     }
 
+    /// Holds a released node on the CAD again.
+    pub fn reattach(&mut self, node: usize) {
+        self.released.remove(&node);
+    }
+
     /// Nodes that may leave the CAD, rising.
     pub fn released(&self) -> impl Iterator<Item = usize> + '_ {
         self.released.iter().copied()

@@ -2,6 +2,7 @@
 
 mod block;
 mod boundary;
+mod components;
 mod condition;
 mod elements;
 pub mod elevate;
@@ -21,6 +22,7 @@ use glam::DVec3;
 
 pub use block::Block;
 pub use boundary::{Boundary, BoundaryFace};
+pub(crate) use components::components;
 pub use condition::Condition;
 pub use elements::{Element, Elements};
 pub use entity::{Entity, EntityKey, Periodic, PhysicalName};

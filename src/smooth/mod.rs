@@ -3,7 +3,6 @@
 mod best;
 mod block;
 mod checkpoint;
-mod components;
 mod confirm;
 mod density;
 mod derivative;

@@ -52,6 +52,10 @@ impl<'a> Problem<'a> {
         Problem { order: mesh.order(), cells, straight, valence }
     }
 
+    pub(super) fn cells(&self) -> &Elements<'a> {
+        &self.cells
+    }
+
     pub(super) fn node_count(&self) -> usize {
         self.straight.len()
     }

@@ -14,7 +14,6 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::best::Best;
-use super::components::components;
 use super::confirm::confirmed_costs;
 use super::density::Density;
 use super::descend::descend;
@@ -26,7 +25,7 @@ use super::pace::{MOST_RINGS, PATIENCE, Pace, RINGS, Stage};
 use super::patch::Patch;
 use super::problem::Kernels;
 use super::{Checkpoint, Constraint, ElementCost, Image, Problem, Progress, Settings, Smoothed, Summary, Watch};
-use crate::mesh::ElementId;
+use crate::mesh::{ElementId, components};
 use crate::quality;
 
 /// A survey is too coarse for an element where it misses this much of its `C_JAC`.
@@ -249,7 +248,9 @@ impl Run<'_, '_> {
         let mut local = vec![u32::MAX; self.problem.node_count()];
         let (mut last, mut moved) = (first, 0);
         let progress = self.progress();
-        for own in components(self.problem, active, images) {
+        // One step length for all would let a spot that cannot be mended stop those that can.
+        let tied = images.iter().map(|image| [image.node, image.of]);
+        for own in components(self.problem.cells(), active, tied) {
             self.sweeps = first;
             self.densify(&own, x);
             let patch = Patch::new(self.problem, &own, &self.density, images, &mut local);

@@ -72,7 +72,7 @@ impl Recovery<'_, '_> {
 
     /// Does what is asked, or, where the mesh is not proven valid after it or a cost falls below the floor, nothing; then the elements
     /// that fail are returned.
-    fn attempt(&mut self, attempt: impl FnOnce(&mut Self)) -> Result<(), Vec<ElementId>> {
+    pub(super) fn attempt(&mut self, attempt: impl FnOnce(&mut Self)) -> Result<(), Vec<ElementId>> {
         let (curved, wall) = (self.level.curved.clone(), self.level.wall.clone());
         let (smoothed, proof) = (self.smoothed.clone(), self.proof.clone());
         let floor = self.level.case.settings.floor.min(smoothed.end.worst());

@@ -5,20 +5,25 @@
 //! that the two faces share is enough: it is drawn back to its place by a spring, and the smoother finds the least it must give.
 
 use glam::DVec3;
+use rustc_hash::FxHashSet;
 
 use super::recovery::Recovery;
 use crate::associate::Classification;
 use crate::curve::start::start;
-use crate::element::interior_start;
-use crate::mesh::{Element, ElementId};
+use crate::element::{edge_nodes, interior_start};
+use crate::mesh::{Element, ElementId, NodeId, components};
 
-/// Which wall nodes of an element that fails are released, none of them a linear one; each goes where the one before was not enough.
+/// Released nodes that are no farther from their place than this share of their displacement are put back, fewer where that fails.
+const HARDLY: [f64; 3] = [0.5, 0.1, 0.02];
+
+/// Which wall nodes at an element that fails are released, none of them a linear one; each goes where the one before was not enough.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Reach {
-    /// Inside the edges that two of its wall faces share.
-    SharedEdge,
-    /// All those inside CAD faces; where it has none, those nearest to its nodes.
-    Element,
+    /// Inside one edge of its wall faces, and inside the faces beside that: the edge that two of its wall faces share, else the one that
+    /// is bent most.
+    Edge,
+    /// All those of its wall faces that are not on CAD curves.
+    Faces,
     /// Those on CAD curves as well, and those of the wall faces around.
     Around,
 }
@@ -26,7 +31,9 @@ enum Reach {
 /// The nodes of a boundary face.
 struct FaceNodes {
     nodes: Vec<usize>,
-    /// From where on they lie inside the face.
+    /// The nodes of each edge, both ends first.
+    edges: &'static [Vec<usize>],
+    /// From where on nodes lie inside the face.
     inside: usize,
 }
 
@@ -34,7 +41,7 @@ impl Recovery<'_, '_> {
     /// Releases wall nodes at the elements that fail or are below the floor.
     pub(super) fn release(&mut self) {
         let settings = self.level.case.settings.smoothing.clone();
-        for reach in [Reach::SharedEdge, Reach::Element, Reach::Around] {
+        for reach in [Reach::Edge, Reach::Edge, Reach::Faces, Reach::Around] {
             let poor = self.below(self.level.case.settings.floor);
             if poor.is_empty() || self.smoothed.stopped {
                 break;
@@ -44,6 +51,44 @@ impl Recovery<'_, '_> {
                 self.smooth_again(&settings);
             }
         }
+        self.reattach();
+    }
+
+    /// Puts released nodes back on the CAD that hardly left it, as many as can be.
+    fn reattach(&mut self) {
+        for share in HARDLY {
+            if !self.proof.holds() || self.smoothed.stopped {
+                break;
+            }
+            let left = |n: &usize| {
+                let place = self.level.displaced(*n);
+                self.level.curved[*n].distance(place) < share * self.level.wall.displacement(*n).length()
+            };
+            let nodes: Vec<usize> = self.level.wall.released().filter(left).collect();
+            let settings = self.closer();
+            let tried = !nodes.is_empty()
+                && self.attempt(|recovery| {
+                    recovery.put_back(&nodes);
+                    recovery.smooth_again(&settings);
+                })
+                .is_ok();
+            if tried {
+                break;
+            }
+        }
+    }
+
+    /// Puts released nodes at their places on the CAD, holds them there, and carries the volume along.
+    fn put_back(&mut self, nodes: &[usize]) {
+        let places: Vec<DVec3> = nodes.iter().map(|&n| self.level.wall.displacement(n)).collect();
+        nodes.iter().for_each(|&n| self.level.wall.displace(n, self.level.curved[n] - self.level.straight()[n]));
+        let before = self.carried();
+        for (&n, place) in nodes.iter().zip(places) {
+            self.level.wall.displace(n, place);
+            self.level.wall.reattach(n);
+            self.level.curved[n] = self.level.displaced(n);
+        }
+        self.carry_on(&before);
     }
 
     /// Elements that fail, or have a cost below the floor; rising.
@@ -59,12 +104,14 @@ impl Recovery<'_, '_> {
     /// Releases wall nodes at some elements; whether there were any that are still held.
     fn release_at(&mut self, elements: &[ElementId], reach: Reach) -> bool {
         let mut marked = vec![false; self.level.curved.len()];
-        for &e in elements {
-            self.mark(e, reach, &mut marked);
+        let tied = self.level.periodic.images().iter().map(|image| [image.node, image.of]);
+        for own in components(&self.level.mesh().cells(), elements, tied) {
+            self.culprits(own, reach).into_iter().for_each(|e| self.mark(e, reach, &mut marked));
         }
         if reach == Reach::Around {
             self.mark_around(&mut marked);
         }
+        self.mark_inside_faces(&mut marked);
         self.level.periodic.spread(&mut marked);
         let nodes: Vec<usize> = (0..marked.len()).filter(|&n| marked[n] && !self.level.wall.is_released(n)).collect();
         nodes.iter().for_each(|&n| self.level.wall.release(n));
@@ -83,6 +130,22 @@ impl Recovery<'_, '_> {
         released.iter().zip(places).for_each(|(&n, place)| self.level.wall.displace(n, place));
     }
 
+    /// Those of some elements that are next to each other at which nodes are released: with one edge in reach those that have two faces on
+    /// walls, or else the worst, as the others may fail because of these.
+    fn culprits(&self, elements: Vec<ElementId>, reach: Reach) -> Vec<ElementId> {
+        if reach != Reach::Edge {
+            return elements;
+        }
+        let cells = self.level.mesh().cells();
+        let cornered = |e: &ElementId| self.wall_faces(&cells.get(*e)).len() > 1;
+        let some: Vec<ElementId> = elements.iter().copied().filter(cornered).collect();
+        if !some.is_empty() {
+            return some;
+        }
+        let cost = |e: &ElementId| self.smoothed.costs[e.index()].worst();
+        elements.into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b))).into_iter().collect()
+    }
+
     /// Whether a node can be released: one on a curved wall that is not a linear node.
     fn releasable(&self, node: usize, curves: bool) -> bool {
         let inside = |classification| match classification {
@@ -95,61 +158,89 @@ impl Recovery<'_, '_> {
             && inside(self.level.wall.classification(node))
     }
 
-    /// Marks the nodes of an element that are in reach.
+    /// Marks the nodes at an element that are in reach.
     fn mark(&self, element: ElementId, reach: Reach, marked: &mut [bool]) {
         let own = self.level.mesh().cells().get(element);
-        if reach == Reach::SharedEdge {
-            return self.mark_shared(&self.wall_faces(&own), marked);
+        let mut faces = self.wall_faces(&own);
+        if faces.is_empty() {
+            faces = self.faces_below(&own);
         }
-        let mut found = false;
-        for n in own.nodes.iter().map(|n| n.index()).filter(|&n| self.releasable(n, reach == Reach::Around)) {
-            marked[n] = true;
-            found = true;
-        }
-        if !found {
-            self.mark_below(&own, marked);
+        let chosen = match reach {
+            Reach::Edge => self.edge_to_release(&faces),
+            Reach::Faces | Reach::Around => None,
+        };
+        let Some(edge) = chosen else {
+            let curves = reach == Reach::Around;
+            let nodes = faces.iter().flat_map(|face| face.nodes.iter().copied());
+            return nodes.filter(|&n| self.releasable(n, curves)).for_each(|n| marked[n] = true);
+        };
+        edge.iter().for_each(|&n| marked[n] = true);
+    }
+
+    /// Marks also the nodes inside wall faces that have a marked node: these faces are off the CAD then anyway.
+    fn mark_inside_faces(&self, marked: &mut [bool]) {
+        for face in (0..self.level.case.boundary.faces.len()).map(|face| self.face_nodes(face)) {
+            if face.nodes.iter().any(|&n| marked[n]) {
+                let inside = face.nodes[face.inside..].iter().filter(|&&n| self.releasable(n, false));
+                inside.for_each(|&n| marked[n] = true);
+            }
         }
     }
 
-    /// Marks the nodes that two of some wall faces share, and those inside these faces, which are off the CAD then anyway.
-    fn mark_shared(&self, faces: &[FaceNodes], marked: &mut [bool]) {
-        for (k, one) in faces.iter().enumerate() {
-            for other in &faces[..k] {
-                let common = one.nodes.iter().filter(|n| other.nodes.contains(n));
-                let common: Vec<usize> = common.copied().filter(|&n| self.releasable(n, false)).collect();
-                if !common.is_empty() {
-                    let inside = one.nodes[one.inside..].iter().chain(&other.nodes[other.inside..]);
-                    common.iter().chain(inside).for_each(|&n| marked[n] = true);
+    /// The inner nodes of the edge that two of some wall faces share, else of the one that is bent most for its length.
+    fn edge_to_release(&self, faces: &[FaceNodes]) -> Option<Vec<usize>> {
+        let straight = self.level.straight();
+        let mut edges: Vec<(usize, f64, Vec<usize>)> = Vec::new();
+        for face in faces {
+            for edge in face.edges {
+                let nodes: Vec<usize> = edge.iter().map(|&place| face.nodes[place]).collect();
+                let inner = &nodes[2..];
+                if !inner.iter().all(|&n| self.releasable(n, false) && !self.level.wall.is_released(n)) {
+                    continue;
                 }
+                let shared = faces.iter().filter(|other| inner.iter().all(|n| other.nodes.contains(n))).count();
+                let moved = inner.iter().map(|&n| self.level.wall.displacement(n).length()).fold(0.0, f64::max);
+                edges.push((shared, moved / straight[nodes[0]].distance(straight[nodes[1]]), inner.to_vec()));
             }
         }
+        let worst = edges.into_iter().max_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        worst.map(|(_, _, nodes)| nodes)
     }
 
     /// An element's faces on curved walls.
     fn wall_faces(&self, own: &Element) -> Vec<FaceNodes> {
-        let (case, mesh) = (self.level.case, self.level.mesh());
-        let on_wall = |face: &usize| {
-            let classification = case.association.faces[*face];
-            matches!(classification, Classification::Surface(_)) && case.association.plane_of(classification).is_none()
-        };
-        let faces = own.sides().filter_map(|side| case.boundary.face_of(side)).filter(on_wall);
-        let nodes = |face: usize| FaceNodes {
-            nodes: case.boundary.nodes(face, mesh).iter().map(|n| n.index()).collect(),
-            inside: interior_start(case.boundary.faces[face].cell, mesh.order()),
-        };
-        faces.map(nodes).collect()
+        let faces = own.sides().filter_map(|side| self.level.case.boundary.face_of(side));
+        faces.filter(|&face| self.is_curved_wall(face)).map(|face| self.face_nodes(face)).collect()
     }
 
-    /// Marks the wall node nearest to each node of an element off the wall.
-    fn mark_below(&self, own: &Element, marked: &mut [bool]) {
-        let straight = self.level.straight();
-        for node in own.nodes.iter().filter(|n| n.index() >= self.level.elevated.linear_nodes) {
+    /// The faces on curved walls under an element off the wall: those between the wall's linear nodes nearest to its corners.
+    fn faces_below(&self, own: &Element) -> Vec<FaceNodes> {
+        let (straight, boundary) = (self.level.straight(), self.level.case.boundary);
+        let below = |node: &NodeId| {
             let distance = |n: &usize| straight[*n].distance_squared(straight[node.index()]);
-            let wall = (0..self.level.wall.len()).filter(|&n| self.level.on_curved_wall(n));
-            let nearest = wall.min_by(|a, b| distance(a).total_cmp(&distance(b)));
-            if let Some(n) = nearest.filter(|&n| self.releasable(n, false)) {
-                marked[n] = true;
-            }
+            let wall = (0..self.level.elevated.linear_nodes).filter(|&n| self.level.on_curved_wall(n));
+            wall.min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        };
+        let nearest: FxHashSet<usize> = own.corners().iter().filter_map(below).collect();
+        let under = |face: &usize| boundary.corners[*face].iter().all(|n| nearest.contains(&n.index()));
+        let faces = (0..boundary.faces.len()).filter(|face| under(face) && self.is_curved_wall(*face));
+        faces.map(|face| self.face_nodes(face)).collect()
+    }
+
+    /// Whether a boundary face is on a CAD surface that is not known to be a plane.
+    fn is_curved_wall(&self, face: usize) -> bool {
+        let association = self.level.case.association;
+        let classification = association.faces[face];
+        matches!(classification, Classification::Surface(_)) && association.plane_of(classification).is_none()
+    }
+
+    fn face_nodes(&self, face: usize) -> FaceNodes {
+        let (boundary, mesh) = (self.level.case.boundary, self.level.mesh());
+        let cell = boundary.faces[face].cell;
+        FaceNodes {
+            nodes: boundary.nodes(face, mesh).iter().map(|n| n.index()).collect(),
+            edges: edge_nodes(cell, mesh.order()),
+            inside: interior_start(cell, mesh.order()),
         }
     }
 

@@ -152,7 +152,7 @@ impl<'a> Projector<'_, 'a> {
     /// Positions of an edge's inner nodes: on the CAD, at equal fractions of the projected edge's length.
     fn spread(&self, classification: Classification, ends: [NodeId; 2], order: Order) -> Feet {
         let p = order.get();
-        let [a, b] = ends.map(|n| self.level.displaced(n));
+        let [a, b] = ends.map(|n| self.level.displaced(n.index()));
         let at = |s: f64| a.lerp(b, s);
         let even: Vec<f64> = (1..p).map(|k| k as f64 / p as f64).collect();
         let chord = |fractions: &[f64]| fractions.iter().map(|&s| at(s)).collect::<Vec<_>>();

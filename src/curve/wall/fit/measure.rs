@@ -99,7 +99,7 @@ impl<'a> Fit<'_, 'a> {
     }
 
     pub(super) fn position(&self, node: NodeId) -> DVec3 {
-        self.level.displaced(node)
+        self.level.displaced(node.index())
     }
 
     /// The group that holds a classification's nodes; planes need none.

@@ -1,29 +1,31 @@
-//! Parts of the active elements that share no node. Each descends on its own: one step length for all would let a spot that cannot be
-//! mended stop those that can.
+//! Connected components of some elements of a mesh.
 
 use rustc_hash::FxHashMap;
 
-use super::{Image, Problem};
-use crate::mesh::{ElementId, NodeId};
+use super::{ElementId, Elements, NodeId};
 
-/// The connected components of `active` (rising): elements that share a node, or nodes that are images of one another, are in one. Each is
-/// rising, and they are in the order of their first elements.
-pub(super) fn components(problem: &Problem, active: &[ElementId], images: &[Image]) -> Vec<Vec<ElementId>> {
+/// The connected components of `some` elements (rising): those that share a node, or have nodes that are `tied` to one another, are in
+/// one. Each is rising, and they are in the order of their first elements.
+pub(crate) fn components(
+    elements: &Elements,
+    some: &[ElementId],
+    tied: impl Iterator<Item = [NodeId; 2]>,
+) -> Vec<Vec<ElementId>> {
     let mut joined = Joined { parents: FxHashMap::default() };
-    for &e in active {
-        let nodes = problem.nodes(e);
+    for &e in some {
+        let nodes = elements.nodes(e);
         nodes[1..].iter().for_each(|&node| joined.join(nodes[0], node));
     }
-    for Image { node, of, .. } in images {
-        if joined.parents.contains_key(node) && joined.parents.contains_key(of) {
-            joined.join(*node, *of);
+    for [a, b] in tied {
+        if joined.parents.contains_key(&a) && joined.parents.contains_key(&b) {
+            joined.join(a, b);
         }
     }
     let mut numbers: FxHashMap<NodeId, usize> = FxHashMap::default();
     let mut components: Vec<Vec<ElementId>> = Vec::new();
-    for &e in active {
+    for &e in some {
         let next = numbers.len();
-        let number = *numbers.entry(joined.root(problem.nodes(e)[0])).or_insert(next);
+        let number = *numbers.entry(joined.root(elements.nodes(e)[0])).or_insert(next);
         if number == components.len() {
             components.push(Vec::new());
         }
