@@ -130,7 +130,26 @@ impl Recovery<'_, '_> {
     pub(super) fn dbg(&self, what: &str) {
         let f = self.proof.failing(self.level);
         let b = self.below(0.1);
-        eprintln!("{what} cpu {:?}: failing {} {:?} walls {} below .1 {} {:?}; released {} off {}; wcn {:.4} jac {:.4} sweeps {}", std::fs::read_to_string("/proc/self/stat").map(|s| s.split(" ").skip(13).take(2).map(|x| x.parse::<f64>().unwrap_or(0.0)).sum::<f64>()/100.0), f.len(), &f[..f.len().min(6)], self.proof.walls.failures.len(), b.len(), &b[..b.len().min(6)], (0..self.level.wall.len()).filter(|&n| self.level.wall.is_released(n)).count(), self.level.wall.off_cad().count(), self.smoothed.end.c_wcn, self.smoothed.end.c_jac, self.smoothed.sweeps);
+        eprintln!(
+            "{what} cpu {:?}: failing {} {:?} walls {} below .1 {} {:?}; released {} off {}; wcn {:.4} jac {:.4} sweeps {}",
+            std::fs::read_to_string("/proc/self/stat").map(|s| s
+                .split(" ")
+                .skip(13)
+                .take(2)
+                .map(|x| x.parse::<f64>().unwrap_or(0.0))
+                .sum::<f64>()
+                / 100.0),
+            f.len(),
+            &f[..f.len().min(6)],
+            self.proof.walls.failures.len(),
+            b.len(),
+            &b[..b.len().min(6)],
+            (0..self.level.wall.len()).filter(|&n| self.level.wall.is_released(n)).count(),
+            self.level.wall.off_cad().count(),
+            self.smoothed.end.c_wcn,
+            self.smoothed.end.c_jac,
+            self.smoothed.sweeps
+        );
     }
 
     /// Takes the displacement back around the elements that fail.

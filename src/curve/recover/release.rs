@@ -11,16 +11,24 @@ use super::recovery::Recovery;
 use crate::associate::Classification;
 use crate::curve::start::start;
 use crate::element::{edge_nodes, interior_start};
-use crate::mesh::{Element, ElementId, NodeId, components};
+use crate::mesh::{Element, ElementId, Incidence, components};
+use crate::smooth;
 
+/// Costs good enough beside nodes that are put back.
+const ENOUGH: f64 = 0.3;
 /// Released nodes that are no farther from their place than this share of their displacement are put back, fewer where that fails.
 const HARDLY: [f64; 3] = [0.5, 0.1, 0.02];
+
+/// Elements among which the wall under an element is sought.
+const SOUGHT: usize = 4096;
+/// Rings of elements around released nodes, and elements that fail, in which the order begins anew.
+const RINGS: usize = 6;
 
 /// Which wall nodes at an element that fails are released, none of them a linear one; each goes where the one before was not enough.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Reach {
     /// Inside one edge of its wall faces, and inside the faces beside that: the edge that two of its wall faces share, else the one that
-    /// is bent most.
+    /// is bent most. At an element off the wall all those of the wall faces under it: these push its column together.
     Edge,
     /// All those of its wall faces that are not on CAD curves.
     Faces,
@@ -47,7 +55,7 @@ impl Recovery<'_, '_> {
                 break;
             }
             if self.release_at(&poor, reach) {
-                self.begin_anew();
+                self.begin_anew(&poor);
                 self.smooth_again(&settings);
             }
         }
@@ -56,6 +64,7 @@ impl Recovery<'_, '_> {
 
     /// Puts released nodes back on the CAD that hardly left it, as many as can be.
     fn reattach(&mut self) {
+        let own = &self.level.case.settings.smoothing;
         for share in HARDLY {
             if !self.proof.holds() || self.smoothed.stopped {
                 break;
@@ -65,13 +74,14 @@ impl Recovery<'_, '_> {
                 self.level.curved[*n].distance(place) < share * self.level.wall.displacement(*n).length()
             };
             let nodes: Vec<usize> = self.level.wall.released().filter(left).collect();
-            let settings = self.closer();
+            let settings = smooth::Settings { threshold: ENOUGH.min(own.threshold), ..self.closer() };
             let tried = !nodes.is_empty()
-                && self.attempt(|recovery| {
-                    recovery.put_back(&nodes);
-                    recovery.smooth_again(&settings);
-                })
-                .is_ok();
+                && self
+                    .attempt(|recovery| {
+                        recovery.put_back(&nodes);
+                        recovery.smooth_again(&settings);
+                    })
+                    .is_ok();
             if tried {
                 break;
             }
@@ -104,9 +114,12 @@ impl Recovery<'_, '_> {
     /// Releases wall nodes at some elements; whether there were any that are still held.
     fn release_at(&mut self, elements: &[ElementId], reach: Reach) -> bool {
         let mut marked = vec![false; self.level.curved.len()];
+        let cells = self.level.mesh().cells();
+        let corners = cells.iter().flat_map(|own| own.corners().iter().map(move |n| (n.index(), own.id)));
+        let around = Incidence::new(self.level.elevated.linear_nodes, corners);
         let tied = self.level.periodic.images().iter().map(|image| [image.node, image.of]);
-        for own in components(&self.level.mesh().cells(), elements, tied) {
-            self.culprits(own, reach).into_iter().for_each(|e| self.mark(e, reach, &mut marked));
+        for own in components(&cells, elements, tied) {
+            self.culprits(own, reach).into_iter().for_each(|e| self.mark(e, reach, &around, &mut marked));
         }
         if reach == Reach::Around {
             self.mark_around(&mut marked);
@@ -118,15 +131,23 @@ impl Recovery<'_, '_> {
         !nodes.is_empty()
     }
 
-    /// Begins the order anew, released nodes where they are in the fallback mesh: they come towards the CAD from a valid mesh, not from
+    /// Begins the order anew around the elements that fail, released nodes where they are in the fallback mesh: they come towards the CAD from a valid mesh, not from
     /// one that was bent to make room for what cannot be.
-    fn begin_anew(&mut self) {
+    fn begin_anew(&mut self, poor: &[ElementId]) {
         let released: Vec<usize> = self.level.wall.released().collect();
         let places: Vec<DVec3> = released.iter().map(|&n| self.level.wall.displacement(n)).collect();
         for &n in &released {
             self.level.wall.displace(n, self.fallback.positions[n] - self.level.straight()[n]);
         }
-        self.level.curved = start(self.level, self.below);
+        let begin = start(self.level, self.below);
+        let near = self.nodes_around(poor, &released);
+        self.level
+            .curved
+            .iter_mut()
+            .zip(begin)
+            .zip(near)
+            .filter(|(_, near)| *near)
+            .for_each(|((x, begin), _)| *x = begin);
         released.iter().zip(places).for_each(|(&n, place)| self.level.wall.displace(n, place));
     }
 
@@ -146,6 +167,21 @@ impl Recovery<'_, '_> {
         elements.into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b))).into_iter().collect()
     }
 
+    /// Marks the nodes within some rings of elements around elements and nodes.
+    fn nodes_around(&self, elements: &[ElementId], nodes: &[usize]) -> Vec<bool> {
+        let cells = self.level.mesh().cells();
+        let mut near = vec![false; self.level.curved.len()];
+        nodes.iter().for_each(|&n| near[n] = true);
+        elements.iter().flat_map(|&e| cells.nodes(e)).for_each(|n| near[n.index()] = true);
+        for _ in 0..RINGS {
+            let touched = cells.iter().filter(|own| own.nodes.iter().any(|n| near[n.index()]));
+            let more: Vec<usize> = touched.flat_map(|own| own.nodes.iter().map(|n| n.index())).collect();
+            more.into_iter().for_each(|n| near[n] = true);
+            self.level.periodic.spread(&mut near);
+        }
+        near
+    }
+
     /// Whether a node can be released: one on a curved wall that is not a linear node.
     fn releasable(&self, node: usize, curves: bool) -> bool {
         let inside = |classification| match classification {
@@ -159,16 +195,16 @@ impl Recovery<'_, '_> {
     }
 
     /// Marks the nodes at an element that are in reach.
-    fn mark(&self, element: ElementId, reach: Reach, marked: &mut [bool]) {
+    fn mark(&self, element: ElementId, reach: Reach, around: &Incidence<ElementId>, marked: &mut [bool]) {
         let own = self.level.mesh().cells().get(element);
         let mut faces = self.wall_faces(&own);
-        if faces.is_empty() {
-            faces = self.faces_below(&own);
-        }
         let chosen = match reach {
             Reach::Edge => self.edge_to_release(&faces),
             Reach::Faces | Reach::Around => None,
         };
+        if faces.is_empty() {
+            faces = self.faces_below(element, around);
+        }
         let Some(edge) = chosen else {
             let curves = reach == Reach::Around;
             let nodes = faces.iter().flat_map(|face| face.nodes.iter().copied());
@@ -213,18 +249,25 @@ impl Recovery<'_, '_> {
         faces.filter(|&face| self.is_curved_wall(face)).map(|face| self.face_nodes(face)).collect()
     }
 
-    /// The faces on curved walls under an element off the wall: those between the wall's linear nodes nearest to its corners.
-    fn faces_below(&self, own: &Element) -> Vec<FaceNodes> {
-        let (straight, boundary) = (self.level.straight(), self.level.case.boundary);
-        let below = |node: &NodeId| {
-            let distance = |n: &usize| straight[*n].distance_squared(straight[node.index()]);
-            let wall = (0..self.level.elevated.linear_nodes).filter(|&n| self.level.on_curved_wall(n));
-            wall.min_by(|a, b| distance(a).total_cmp(&distance(b)))
-        };
-        let nearest: FxHashSet<usize> = own.corners().iter().filter_map(below).collect();
-        let under = |face: &usize| boundary.corners[*face].iter().all(|n| nearest.contains(&n.index()));
-        let faces = (0..boundary.faces.len()).filter(|face| under(face) && self.is_curved_wall(*face));
-        faces.map(|face| self.face_nodes(face)).collect()
+    /// The faces on curved walls under an element off the wall: those of the first elements with one that are come by, from element to
+    /// element through their sides. In layers this is the foot of the element's column.
+    fn faces_below(&self, element: ElementId, around: &Incidence<ElementId>) -> Vec<FaceNodes> {
+        let cells = self.level.mesh().cells();
+        let (mut seen, mut front) = (FxHashSet::from_iter([element]), vec![element]);
+        while !front.is_empty() && seen.len() < SOUGHT {
+            let mut next = Vec::new();
+            for side in front.iter().flat_map(|&e| cells.get(e).sides()) {
+                let behind = |e: &&ElementId| cells.get(**e).sides().any(|other| other == side);
+                let first = side.corners().first().map_or(&[][..], |n| around.at(n.index()));
+                next.extend(first.iter().filter(behind).copied().filter(|&e| seen.insert(e)));
+            }
+            let faces: Vec<FaceNodes> = next.iter().flat_map(|&e| self.wall_faces(&cells.get(e))).collect();
+            if !faces.is_empty() {
+                return faces;
+            }
+            front = next;
+        }
+        Vec::new()
     }
 
     /// Whether a boundary face is on a CAD surface that is not known to be a plane.

@@ -96,7 +96,8 @@ impl Report {
         for face in self.off_cad.iter().take(LISTED) {
             let way = match (face.order, face.fraction) {
                 (Some(order), Some(fraction)) => {
-                    let base = if order == 1 { "the straight face".to_owned() } else { format!("the face of P{order}") };
+                    let base =
+                        if order == 1 { "the straight face".to_owned() } else { format!("the face of P{order}") };
                     format!("{:.0} % of the way from {base} to the CAD", 100.0 * fraction)
                 }
                 _ => "released".to_owned(),
