@@ -45,11 +45,21 @@ struct FaceNodes {
     inside: usize,
 }
 
+/// An edge of wall faces.
+struct WallEdge {
+    /// Its nodes but for the ends.
+    inner: Vec<usize>,
+    /// Whether two faces of one element meet at it within one smooth wall.
+    shared: bool,
+    /// How far its nodes are displaced, in lengths of the edge.
+    bend: f64,
+}
+
 impl Recovery<'_, '_> {
     /// Releases wall nodes at the elements that fail or are below the floor.
     pub(super) fn release(&mut self) {
         let settings = self.level.case.settings.smoothing.clone();
-        for reach in [Reach::Edge, Reach::Edge, Reach::Faces, Reach::Around] {
+        for reach in [Reach::Edge, Reach::Edge, Reach::Edge, Reach::Faces, Reach::Around] {
             let poor = self.below(self.level.case.settings.floor);
             if poor.is_empty() || self.smoothed.stopped {
                 break;
@@ -151,20 +161,30 @@ impl Recovery<'_, '_> {
         released.iter().zip(places).for_each(|(&n, place)| self.level.wall.displace(n, place));
     }
 
-    /// Those of some elements that are next to each other at which nodes are released: with one edge in reach those that have two faces on
-    /// walls, or else the worst, as the others may fail because of these.
+    /// Those of some elements that are next to each other at which nodes are released. With one edge in reach these are the ones that have
+    /// two faces on one smooth wall, or else the worst of those on a wall, as the others may fail because of these; where none is on a
+    /// wall, all.
     fn culprits(&self, elements: Vec<ElementId>, reach: Reach) -> Vec<ElementId> {
         if reach != Reach::Edge {
             return elements;
         }
         let cells = self.level.mesh().cells();
-        let cornered = |e: &ElementId| self.wall_faces(&cells.get(*e)).len() > 1;
-        let some: Vec<ElementId> = elements.iter().copied().filter(cornered).collect();
-        if !some.is_empty() {
-            return some;
+        let (mut cornered, mut on_wall) = (Vec::new(), Vec::new());
+        for &e in &elements {
+            let faces = self.wall_faces(&cells.get(e));
+            if !faces.is_empty() {
+                on_wall.push(e);
+            }
+            if self.edge_to_release(&faces).is_some_and(|edge| edge.shared) {
+                cornered.push(e);
+            }
         }
         let cost = |e: &ElementId| self.smoothed.costs[e.index()].worst();
-        elements.into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b))).into_iter().collect()
+        match on_wall.into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b))) {
+            _ if !cornered.is_empty() => cornered,
+            Some(worst) => vec![worst],
+            None => elements,
+        }
     }
 
     /// Marks the nodes within some rings of elements around elements and nodes.
@@ -206,11 +226,11 @@ impl Recovery<'_, '_> {
             faces = self.faces_below(element, around);
         }
         let Some(edge) = chosen else {
-            let curves = reach == Reach::Around;
+            let curves = reach != Reach::Faces;
             let nodes = faces.iter().flat_map(|face| face.nodes.iter().copied());
             return nodes.filter(|&n| self.releasable(n, curves)).for_each(|n| marked[n] = true);
         };
-        edge.iter().for_each(|&n| marked[n] = true);
+        edge.inner.iter().for_each(|&n| marked[n] = true);
     }
 
     /// Marks also the nodes inside wall faces that have a marked node: these faces are off the CAD then anyway.
@@ -223,33 +243,34 @@ impl Recovery<'_, '_> {
         }
     }
 
-    /// The inner nodes of the edge that two of some wall faces share, else of the one that is bent most for its length.
-    fn edge_to_release(&self, faces: &[FaceNodes]) -> Option<Vec<usize>> {
+    /// The edge that two of some wall faces share within one smooth wall, else the one that is bent most.
+    fn edge_to_release(&self, faces: &[FaceNodes]) -> Option<WallEdge> {
         let straight = self.level.straight();
-        let mut edges: Vec<(usize, f64, Vec<usize>)> = Vec::new();
+        let mut edges = Vec::new();
         for face in faces {
             for edge in face.edges {
                 let nodes: Vec<usize> = edge.iter().map(|&place| face.nodes[place]).collect();
                 let inner = &nodes[2..];
-                if !inner.iter().all(|&n| self.releasable(n, false) && !self.level.wall.is_released(n)) {
+                if !inner.iter().all(|&n| self.releasable(n, true) && !self.level.wall.is_released(n)) {
                     continue;
                 }
-                let shared = faces.iter().filter(|other| inner.iter().all(|n| other.nodes.contains(n))).count();
+                let smooth = inner.iter().all(|&n| self.releasable(n, false));
+                let at = faces.iter().filter(|other| inner.iter().all(|n| other.nodes.contains(n))).count();
                 let moved = inner.iter().map(|&n| self.level.wall.displacement(n).length()).fold(0.0, f64::max);
-                edges.push((shared, moved / straight[nodes[0]].distance(straight[nodes[1]]), inner.to_vec()));
+                let bend = moved / straight[nodes[0]].distance(straight[nodes[1]]);
+                edges.push(WallEdge { inner: inner.to_vec(), shared: smooth && at > 1, bend });
             }
         }
-        let worst = edges.into_iter().max_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        worst.map(|(_, _, nodes)| nodes)
+        edges.into_iter().max_by(|a, b| a.shared.cmp(&b.shared).then(a.bend.total_cmp(&b.bend)))
     }
 
-    /// An element's faces on curved walls.
+    /// An element's faces on the CAD.
     fn wall_faces(&self, own: &Element) -> Vec<FaceNodes> {
         let faces = own.sides().filter_map(|side| self.level.case.boundary.face_of(side));
-        faces.filter(|&face| self.is_curved_wall(face)).map(|face| self.face_nodes(face)).collect()
+        faces.filter(|&face| self.is_on_cad(face)).map(|face| self.face_nodes(face)).collect()
     }
 
-    /// The faces on curved walls under an element off the wall: those of the first elements with one that are come by, from element to
+    /// The faces on the CAD under an element off the wall: those of the first elements with one that are come by, from element to
     /// element through their sides. In layers this is the foot of the element's column.
     fn faces_below(&self, element: ElementId, around: &Incidence<ElementId>) -> Vec<FaceNodes> {
         let cells = self.level.mesh().cells();
@@ -270,11 +291,8 @@ impl Recovery<'_, '_> {
         Vec::new()
     }
 
-    /// Whether a boundary face is on a CAD surface that is not known to be a plane.
-    fn is_curved_wall(&self, face: usize) -> bool {
-        let association = self.level.case.association;
-        let classification = association.faces[face];
-        matches!(classification, Classification::Surface(_)) && association.plane_of(classification).is_none()
+    fn is_on_cad(&self, face: usize) -> bool {
+        matches!(self.level.case.association.faces[face], Classification::Surface(_))
     }
 
     fn face_nodes(&self, face: usize) -> FaceNodes {
