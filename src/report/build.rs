@@ -160,16 +160,12 @@ fn off_cad(curved: &Curved, off: &OffCadFace) -> OffCadReport {
     let face = &curved.boundary.faces[off.face];
     let corners = &curved.boundary.corners[off.face];
     let middle: DVec3 = corners.iter().map(|n| curved.mesh.points()[n.index()]).sum::<DVec3>() / corners.len() as f64;
-    let (order, fraction) = match off.departure {
-        Departure::Released => (None, None),
-        Departure::Back { order, fraction } => (Some(order.get()), Some(fraction)),
-    };
     OffCadReport {
         element: curved.boundary.tag(off.face, &curved.mesh),
         entity: face.entity.to_string(),
         released: off.departure == Departure::Released,
-        order,
-        fraction,
+        order: off.order().map(Order::get),
+        fraction: off.fraction(),
         cad_distance: distance(curved, off.face),
         position: middle.to_array(),
     }

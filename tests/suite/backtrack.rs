@@ -72,7 +72,7 @@ fn displacements_are_taken_back_until_every_element_is_valid() {
     assert!(proof.holds());
     let again = certify::mesh(level.mesh(), &level.curved, None, &Settings::default());
     assert!(again.holds(), "the mesh that is handed back is the valid one");
-    assert!(!off_cad.is_empty() && off_cad.iter().all(|off| off.fraction < 1.0));
+    assert!(!off_cad.is_empty() && off_cad.iter().all(|off| off.fraction().is_some_and(|fraction| fraction < 1.0)));
     assert!(off_cad.len() < given.boundary.faces.len() / 2, "{} faces off the CAD for one node", off_cad.len());
     let moved = level.curved[wall_node.index()].distance(level.straight()[wall_node.index()]);
     assert!(moved < 0.2 * 3.0_f64.sqrt(), "taken back: {moved}");
@@ -152,7 +152,7 @@ fn a_folded_wall_face_of_a_valid_element_is_taken_back() {
     let off_cad = off_cad_faces(&level, Order::LINEAR, |n| fractions[n]);
     assert!(proof.holds(), "{proof:?}");
     assert!(off_cad.len() == 1 && off_cad[0].face == 0, "{off_cad:?}");
-    assert!((0.25..1.0).contains(&off_cad[0].fraction), "no more than it must: {off_cad:?}");
+    assert!((0.25..1.0).contains(&off_cad[0].fraction().unwrap()), "no more than it must: {off_cad:?}");
 }
 
 /// A triangle on half a cylinder from 20 to 60 degrees along one edge, its third corner at 140: there the wall, and the face with it,

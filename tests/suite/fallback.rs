@@ -44,8 +44,11 @@ fn where_no_time_is_left_faces_keep_their_curve_of_p2() {
             "{patience}: not the mesh that was proven"
         );
         let off_cad = curved.off_cad;
-        assert!(!off_cad.is_empty() && off_cad.iter().all(|face| face.order.get() == 2), "{patience}: {off_cad:?}");
-        off_cad.iter().map(|face| face.fraction).fold(1.0, f64::min)
+        assert!(
+            !off_cad.is_empty() && off_cad.iter().all(|face| face.order().unwrap().get() == 2),
+            "{patience}: {off_cad:?}"
+        );
+        off_cad.iter().map(|face| face.fraction().unwrap()).fold(1.0, f64::min)
     };
     let (at_once, on_the_way) = (ended_after(1), ended_after(350));
     assert!(at_once < 0.5 && on_the_way > 0.5, "{at_once} {on_the_way}");

@@ -32,7 +32,7 @@ fn levels(level: &Level) -> BTreeMap<usize, f64> {
         let samples = Samples::survey(face.cell, Order::LINEAR, DENSITY * order.get());
         for &at in &samples.points()[..samples.count()] {
             let values = basis::values(face.cell, order, at);
-            let x: DVec3 = nodes.iter().zip(values).map(|(n, v)| level.displaced(*n) * v).sum();
+            let x: DVec3 = nodes.iter().zip(values).map(|(n, v)| level.displaced(n.index()) * v).sum();
             let farthest = levels.entry(surface).or_insert(0.0_f64);
             *farthest = farthest.max(association.surfaces[surface].group.distance(x));
         }

@@ -29,6 +29,7 @@ mod plane;
 mod project;
 mod real_linkage;
 mod registry;
+mod release;
 mod resume;
 mod samples;
 mod schema;

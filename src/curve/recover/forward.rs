@@ -47,7 +47,7 @@ impl Recovery<'_, '_> {
             }
             let Some(least) = farthest_back(&self.level.wall, &pull) else { break };
             let fraction = (step / (1.0 - least)).min(1.0);
-            let tried = self.attempt(|recovery| {
+            let tried = self.attempt(self.floor(), |recovery| {
                 recovery.go_forward(fraction, &pull);
                 recovery.smooth_again(&enough);
             });
@@ -67,15 +67,14 @@ impl Recovery<'_, '_> {
             }
         }
         let settings = self.level.case.settings;
-        let _ = self.attempt(|recovery| recovery.smooth_again(&settings.smoothing));
+        let _ = self.attempt(self.floor(), |recovery| recovery.smooth_again(&settings.smoothing));
     }
 
-    /// Does what is asked, or, where the mesh is not proven valid after it or a cost falls below the floor, nothing; then the elements
-    /// that fail are returned.
-    pub(super) fn attempt(&mut self, attempt: impl FnOnce(&mut Self)) -> Result<(), Vec<ElementId>> {
+    /// Does what is asked, or, where the mesh is not proven valid after it or a cost is below `floor`, nothing; then the elements that fail
+    /// are returned.
+    pub(super) fn attempt(&mut self, floor: f64, attempt: impl FnOnce(&mut Self)) -> Result<(), Vec<ElementId>> {
         let (curved, wall) = (self.level.curved.clone(), self.level.wall.clone());
         let (smoothed, proof) = (self.smoothed.clone(), self.proof.clone());
-        let floor = self.level.case.settings.floor.min(smoothed.end.worst());
         attempt(self);
         let failing = self.below(floor);
         if failing.is_empty() && self.proof.holds() {

@@ -27,9 +27,30 @@ pub enum Departure {
     },
 }
 
-/// The faces on the CAD by their classification that have a node which is off it; `order` is that of the fallback.
+impl OffCadFace {
+    /// The fraction of its way from the fallback to the CAD at which a face is that was taken back.
+    #[must_use]
+    pub fn fraction(&self) -> Option<f64> {
+        match self.departure {
+            Departure::Released => None,
+            Departure::Back { fraction, .. } => Some(fraction),
+        }
+    }
+
+    /// Order of the fallback of a face that was taken back.
+    #[must_use]
+    pub fn order(&self) -> Option<Order> {
+        match self.departure {
+            Departure::Released => None,
+            Departure::Back { order, .. } => Some(order),
+        }
+    }
+}
+
+/// The faces on the CAD by their classification that have a node which is off it; `order` is that of the fallback, `fraction` tells how
+/// far each node is on its way from there.
 #[must_use]
-pub fn off_cad_faces(level: &Level, order: Order) -> Vec<OffCadFace> {
+pub fn off_cad_faces(level: &Level, order: Order, fraction: impl Fn(usize) -> f64) -> Vec<OffCadFace> {
     let Level { case, wall, .. } = level;
     let mut faces = Vec::new();
     for face in 0..case.boundary.faces.len() {
@@ -37,7 +58,7 @@ pub fn off_cad_faces(level: &Level, order: Order) -> Vec<OffCadFace> {
             continue;
         }
         let nodes = case.boundary.nodes(face, level.mesh());
-        let fraction = nodes.iter().map(|n| wall.fraction(n.index())).fold(1.0, f64::min);
+        let fraction = nodes.iter().map(|n| fraction(n.index())).fold(1.0, f64::min);
         if fraction < 1.0 {
             faces.push(OffCadFace { face, departure: Departure::Back { fraction, order } });
         } else if nodes.iter().any(|n| wall.is_released(n.index())) {

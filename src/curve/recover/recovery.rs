@@ -43,8 +43,8 @@ pub(super) struct Recovery<'l, 'a> {
     pub(super) watch: &'l mut dyn Watch,
 }
 
-/// Makes a smoothed level valid; `proof` is that of the level as it is and does not hold, `below` the curved mesh of the order below,
-/// where there is one.
+/// Makes a smoothed level valid, and better where a cost is below the floor; `proof` is that of the level as it is, `below` the curved
+/// mesh of the order below, where there is one.
 pub fn recover<'l>(
     level: &'l mut Level,
     smoothed: &'l mut Smoothed,
@@ -55,7 +55,6 @@ pub fn recover<'l>(
     let fallback = fallback(level, below);
     let order = fallback.order;
     let mut recovery = Recovery { level, smoothed, proof, below, fallback, watch };
-    recovery.dbg("begin");
     recovery.again();
     recovery.release();
     recovery.back();
@@ -67,7 +66,7 @@ pub fn recover<'l>(
         let problem = Problem::new(level.mesh(), level.straight());
         smoothed.survey(&problem, &level.curved, level.case.settings.smoothing.survey_factor);
     }
-    let off_cad = off_cad_faces(level, order);
+    let off_cad = off_cad_faces(level, order, |n| level.wall.fraction(n));
     Recovered { off_cad, proof }
 }
 
@@ -124,32 +123,6 @@ impl Recovery<'_, '_> {
         self.smoothed.costs = again.costs;
         self.smoothed.end = again.end;
         self.proof = Proof::of(self.level);
-        self.dbg("smoothed");
-    }
-
-    pub(super) fn dbg(&self, what: &str) {
-        let f = self.proof.failing(self.level);
-        let b = self.below(0.1);
-        eprintln!(
-            "{what} cpu {:?}: failing {} {:?} walls {} below .1 {} {:?}; released {} off {}; wcn {:.4} jac {:.4} sweeps {}",
-            std::fs::read_to_string("/proc/self/stat").map(|s| s
-                .split(" ")
-                .skip(13)
-                .take(2)
-                .map(|x| x.parse::<f64>().unwrap_or(0.0))
-                .sum::<f64>()
-                / 100.0),
-            f.len(),
-            &f[..f.len().min(6)],
-            self.proof.walls.failures.len(),
-            b.len(),
-            &b[..b.len().min(6)],
-            (0..self.level.wall.len()).filter(|&n| self.level.wall.is_released(n)).count(),
-            self.level.wall.off_cad().count(),
-            self.smoothed.end.c_wcn,
-            self.smoothed.end.c_jac,
-            self.smoothed.sweeps
-        );
     }
 
     /// Takes the displacement back around the elements that fail.
@@ -184,6 +157,8 @@ impl Recovery<'_, '_> {
                 self.place(n); // its position stays the one that was proven, to the bit
             }
         }
+        let problem = Problem::new(self.level.mesh(), self.level.straight());
+        self.smoothed.survey(&problem, &self.level.curved, self.level.case.settings.smoothing.survey_factor);
     }
 
     /// Puts wall nodes where they are on their way; the others go with them from where the walls `carried` them before, or stay.

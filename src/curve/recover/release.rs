@@ -5,71 +5,51 @@
 //! that the two faces share is enough: it is drawn back to its place by a spring, and the smoother finds the least it must give.
 
 use glam::DVec3;
-use rustc_hash::FxHashSet;
 
+use super::offending::Reach;
 use super::recovery::Recovery;
-use crate::associate::Classification;
 use crate::curve::start::start;
-use crate::element::{edge_nodes, interior_start};
-use crate::mesh::{Element, ElementId, Incidence, components};
+use crate::mesh::ElementId;
 use crate::smooth;
 
+/// Costs good enough where the order begins anew.
+const CALM: f64 = 0.5;
 /// Costs good enough beside nodes that are put back.
 const ENOUGH: f64 = 0.3;
 /// Released nodes that are no farther from their place than this share of their displacement are put back, fewer where that fails.
 const HARDLY: [f64; 3] = [0.5, 0.1, 0.02];
 
-/// Elements among which the wall under an element is sought.
-const SOUGHT: usize = 4096;
 /// Rings of elements around released nodes, and elements that fail, in which the order begins anew.
 const RINGS: usize = 6;
 
-/// Which wall nodes at an element that fails are released, none of them a linear one; each goes where the one before was not enough.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Reach {
-    /// Inside one edge of its wall faces, and inside the faces beside that: the edge that two of its wall faces share, else the one that
-    /// is bent most. At an element off the wall all those of the wall faces under it: these push its column together.
-    Edge,
-    /// All those of its wall faces that are not on CAD curves.
-    Faces,
-    /// Those on CAD curves as well, and those of the wall faces around.
-    Around,
-}
-
-/// The nodes of a boundary face.
-struct FaceNodes {
-    nodes: Vec<usize>,
-    /// The nodes of each edge, both ends first.
-    edges: &'static [Vec<usize>],
-    /// From where on nodes lie inside the face.
-    inside: usize,
-}
-
-/// An edge of wall faces.
-struct WallEdge {
-    /// Its nodes but for the ends.
-    inner: Vec<usize>,
-    /// Whether two faces of one element meet at it within one smooth wall.
-    shared: bool,
-    /// How far its nodes are displaced, in lengths of the edge.
-    bend: f64,
-}
-
 impl Recovery<'_, '_> {
-    /// Releases wall nodes at the elements that fail or are below the floor.
+    /// Releases wall nodes at the elements that fail or are below the floor; where that does not end in a proof, nothing is changed.
     pub(super) fn release(&mut self) {
-        let settings = self.level.case.settings.smoothing.clone();
+        if self.below(self.level.case.settings.floor).is_empty() || self.smoothed.stopped {
+            return;
+        }
+        let had = if self.proof.holds() { self.smoothed.end.worst() } else { 0.0 };
+        let _ = self.attempt(had.max(0.0), |recovery| {
+            recovery.release_step_by_step();
+            recovery.reattach();
+        });
+    }
+
+    fn release_step_by_step(&mut self) {
+        let own = &self.level.case.settings.smoothing;
+        let settings = smooth::Settings { threshold: own.threshold.min(CALM), ..own.clone() };
         for reach in [Reach::Edge, Reach::Edge, Reach::Edge, Reach::Faces, Reach::Around] {
             let poor = self.below(self.level.case.settings.floor);
             if poor.is_empty() || self.smoothed.stopped {
                 break;
             }
-            if self.release_at(&poor, reach) {
+            let nodes = self.offending(&poor, reach);
+            if !nodes.is_empty() {
+                nodes.iter().for_each(|&n| self.level.wall.release(n));
                 self.begin_anew(&poor);
                 self.smooth_again(&settings);
             }
         }
-        self.reattach();
     }
 
     /// Puts released nodes back on the CAD that hardly left it, as many as can be.
@@ -85,14 +65,14 @@ impl Recovery<'_, '_> {
             };
             let nodes: Vec<usize> = self.level.wall.released().filter(left).collect();
             let settings = smooth::Settings { threshold: ENOUGH.min(own.threshold), ..self.closer() };
-            let tried = !nodes.is_empty()
-                && self
-                    .attempt(|recovery| {
-                        recovery.put_back(&nodes);
-                        recovery.smooth_again(&settings);
-                    })
-                    .is_ok();
-            if tried {
+            if nodes.is_empty() {
+                break;
+            }
+            let tried = self.attempt(self.floor(), |recovery| {
+                recovery.put_back(&nodes);
+                recovery.smooth_again(&settings);
+            });
+            if tried.is_ok() {
                 break;
             }
         }
@@ -111,6 +91,11 @@ impl Recovery<'_, '_> {
         self.carry_on(&before);
     }
 
+    /// The floor, or what the smallest cost is where that is less.
+    pub(super) fn floor(&self) -> f64 {
+        self.level.case.settings.floor.min(self.smoothed.end.worst())
+    }
+
     /// Elements that fail, or have a cost below the floor; rising.
     pub(super) fn below(&self, floor: f64) -> Vec<ElementId> {
         let mut poor = self.proof.failing(self.level);
@@ -121,28 +106,8 @@ impl Recovery<'_, '_> {
         poor
     }
 
-    /// Releases wall nodes at some elements; whether there were any that are still held.
-    fn release_at(&mut self, elements: &[ElementId], reach: Reach) -> bool {
-        let mut marked = vec![false; self.level.curved.len()];
-        let cells = self.level.mesh().cells();
-        let corners = cells.iter().flat_map(|own| own.corners().iter().map(move |n| (n.index(), own.id)));
-        let around = Incidence::new(self.level.elevated.linear_nodes, corners);
-        let tied = self.level.periodic.images().iter().map(|image| [image.node, image.of]);
-        for own in components(&cells, elements, tied) {
-            self.culprits(own, reach).into_iter().for_each(|e| self.mark(e, reach, &around, &mut marked));
-        }
-        if reach == Reach::Around {
-            self.mark_around(&mut marked);
-        }
-        self.mark_inside_faces(&mut marked);
-        self.level.periodic.spread(&mut marked);
-        let nodes: Vec<usize> = (0..marked.len()).filter(|&n| marked[n] && !self.level.wall.is_released(n)).collect();
-        nodes.iter().for_each(|&n| self.level.wall.release(n));
-        !nodes.is_empty()
-    }
-
-    /// Begins the order anew around the elements that fail, released nodes where they are in the fallback mesh: they come towards the CAD from a valid mesh, not from
-    /// one that was bent to make room for what cannot be.
+    /// Begins the order anew around the elements that fail, released nodes where they are in the fallback mesh: they come towards the CAD
+    /// from a valid mesh, not from one that was bent to make room for what cannot be.
     fn begin_anew(&mut self, poor: &[ElementId]) {
         let released: Vec<usize> = self.level.wall.released().collect();
         let places: Vec<DVec3> = released.iter().map(|&n| self.level.wall.displacement(n)).collect();
@@ -151,40 +116,10 @@ impl Recovery<'_, '_> {
         }
         let begin = start(self.level, self.below);
         let near = self.nodes_around(poor, &released);
-        self.level
-            .curved
-            .iter_mut()
-            .zip(begin)
-            .zip(near)
-            .filter(|(_, near)| *near)
-            .for_each(|((x, begin), _)| *x = begin);
+        for ((x, begin), _) in self.level.curved.iter_mut().zip(begin).zip(near).filter(|(_, near)| *near) {
+            *x = begin;
+        }
         released.iter().zip(places).for_each(|(&n, place)| self.level.wall.displace(n, place));
-    }
-
-    /// Those of some elements that are next to each other at which nodes are released. With one edge in reach these are the ones that have
-    /// two faces on one smooth wall, or else the worst of those on a wall, as the others may fail because of these; where none is on a
-    /// wall, all.
-    fn culprits(&self, elements: Vec<ElementId>, reach: Reach) -> Vec<ElementId> {
-        if reach != Reach::Edge {
-            return elements;
-        }
-        let cells = self.level.mesh().cells();
-        let (mut cornered, mut on_wall) = (Vec::new(), Vec::new());
-        for &e in &elements {
-            let faces = self.wall_faces(&cells.get(e));
-            if !faces.is_empty() {
-                on_wall.push(e);
-            }
-            if self.edge_to_release(&faces).is_some_and(|edge| edge.shared) {
-                cornered.push(e);
-            }
-        }
-        let cost = |e: &ElementId| self.smoothed.costs[e.index()].worst();
-        match on_wall.into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b))) {
-            _ if !cornered.is_empty() => cornered,
-            Some(worst) => vec![worst],
-            None => elements,
-        }
     }
 
     /// Marks the nodes within some rings of elements around elements and nodes.
@@ -200,121 +135,5 @@ impl Recovery<'_, '_> {
             self.level.periodic.spread(&mut near);
         }
         near
-    }
-
-    /// Whether a node can be released: one on a curved wall that is not a linear node.
-    fn releasable(&self, node: usize, curves: bool) -> bool {
-        let inside = |classification| match classification {
-            Classification::Surface(_) => true,
-            Classification::Curve(_) => curves,
-            _ => false,
-        };
-        node >= self.level.elevated.linear_nodes
-            && self.level.on_curved_wall(node)
-            && inside(self.level.wall.classification(node))
-    }
-
-    /// Marks the nodes at an element that are in reach.
-    fn mark(&self, element: ElementId, reach: Reach, around: &Incidence<ElementId>, marked: &mut [bool]) {
-        let own = self.level.mesh().cells().get(element);
-        let mut faces = self.wall_faces(&own);
-        let chosen = match reach {
-            Reach::Edge => self.edge_to_release(&faces),
-            Reach::Faces | Reach::Around => None,
-        };
-        if faces.is_empty() {
-            faces = self.faces_below(element, around);
-        }
-        let Some(edge) = chosen else {
-            let curves = reach != Reach::Faces;
-            let nodes = faces.iter().flat_map(|face| face.nodes.iter().copied());
-            return nodes.filter(|&n| self.releasable(n, curves)).for_each(|n| marked[n] = true);
-        };
-        edge.inner.iter().for_each(|&n| marked[n] = true);
-    }
-
-    /// Marks also the nodes inside wall faces that have a marked node: these faces are off the CAD then anyway.
-    fn mark_inside_faces(&self, marked: &mut [bool]) {
-        for face in (0..self.level.case.boundary.faces.len()).map(|face| self.face_nodes(face)) {
-            if face.nodes.iter().any(|&n| marked[n]) {
-                let inside = face.nodes[face.inside..].iter().filter(|&&n| self.releasable(n, false));
-                inside.for_each(|&n| marked[n] = true);
-            }
-        }
-    }
-
-    /// The edge that two of some wall faces share within one smooth wall, else the one that is bent most.
-    fn edge_to_release(&self, faces: &[FaceNodes]) -> Option<WallEdge> {
-        let straight = self.level.straight();
-        let mut edges = Vec::new();
-        for face in faces {
-            for edge in face.edges {
-                let nodes: Vec<usize> = edge.iter().map(|&place| face.nodes[place]).collect();
-                let inner = &nodes[2..];
-                if !inner.iter().all(|&n| self.releasable(n, true) && !self.level.wall.is_released(n)) {
-                    continue;
-                }
-                let smooth = inner.iter().all(|&n| self.releasable(n, false));
-                let at = faces.iter().filter(|other| inner.iter().all(|n| other.nodes.contains(n))).count();
-                let moved = inner.iter().map(|&n| self.level.wall.displacement(n).length()).fold(0.0, f64::max);
-                let bend = moved / straight[nodes[0]].distance(straight[nodes[1]]);
-                edges.push(WallEdge { inner: inner.to_vec(), shared: smooth && at > 1, bend });
-            }
-        }
-        edges.into_iter().max_by(|a, b| a.shared.cmp(&b.shared).then(a.bend.total_cmp(&b.bend)))
-    }
-
-    /// An element's faces on the CAD.
-    fn wall_faces(&self, own: &Element) -> Vec<FaceNodes> {
-        let faces = own.sides().filter_map(|side| self.level.case.boundary.face_of(side));
-        faces.filter(|&face| self.is_on_cad(face)).map(|face| self.face_nodes(face)).collect()
-    }
-
-    /// The faces on the CAD under an element off the wall: those of the first elements with one that are come by, from element to
-    /// element through their sides. In layers this is the foot of the element's column.
-    fn faces_below(&self, element: ElementId, around: &Incidence<ElementId>) -> Vec<FaceNodes> {
-        let cells = self.level.mesh().cells();
-        let (mut seen, mut front) = (FxHashSet::from_iter([element]), vec![element]);
-        while !front.is_empty() && seen.len() < SOUGHT {
-            let mut next = Vec::new();
-            for side in front.iter().flat_map(|&e| cells.get(e).sides()) {
-                let behind = |e: &&ElementId| cells.get(**e).sides().any(|other| other == side);
-                let first = side.corners().first().map_or(&[][..], |n| around.at(n.index()));
-                next.extend(first.iter().filter(behind).copied().filter(|&e| seen.insert(e)));
-            }
-            let faces: Vec<FaceNodes> = next.iter().flat_map(|&e| self.wall_faces(&cells.get(e))).collect();
-            if !faces.is_empty() {
-                return faces;
-            }
-            front = next;
-        }
-        Vec::new()
-    }
-
-    fn is_on_cad(&self, face: usize) -> bool {
-        matches!(self.level.case.association.faces[face], Classification::Surface(_))
-    }
-
-    fn face_nodes(&self, face: usize) -> FaceNodes {
-        let (boundary, mesh) = (self.level.case.boundary, self.level.mesh());
-        let cell = boundary.faces[face].cell;
-        FaceNodes {
-            nodes: boundary.nodes(face, mesh).iter().map(|n| n.index()).collect(),
-            edges: edge_nodes(cell, mesh.order()),
-            inside: interior_start(cell, mesh.order()),
-        }
-    }
-
-    /// Marks also the nodes of the wall faces that have a marked node.
-    fn mark_around(&self, marked: &mut [bool]) {
-        let (case, mesh) = (self.level.case, self.level.mesh());
-        let mut around = Vec::new();
-        for face in 0..case.boundary.faces.len() {
-            let nodes = case.boundary.nodes(face, mesh);
-            if nodes.iter().any(|n| marked[n.index()]) {
-                around.extend(nodes.iter().map(|n| n.index()).filter(|&n| self.releasable(n, true)));
-            }
-        }
-        around.into_iter().for_each(|n| marked[n] = true);
     }
 }

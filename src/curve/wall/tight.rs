@@ -24,6 +24,8 @@ const CLEAR: f64 = 0.6;
 pub(super) fn tight_nodes(case: Case, elevated: &Elevated, wall: &Wall) -> FxHashSet<NodeId> {
     let (mesh, order) = (&elevated.mesh, elevated.mesh.order());
     let at = |node: NodeId| mesh.points()[node.index()] + wall.displacement(node.index());
+    // Nodes in planes go where the volume wants them.
+    let is_held = |node: NodeId| case.association.plane_of(wall.classification(node.index())).is_none();
     let slopes = end_slopes(order);
     let mut tight = FxHashSet::default();
     for (face, own) in case.boundary.faces.iter().enumerate() {
@@ -31,7 +33,7 @@ pub(super) fn tight_nodes(case: Case, elevated: &Elevated, wall: &Wall) -> FxHas
         let nodes = case.boundary.nodes(face, mesh);
         let edges = edge_nodes(own.cell, order);
         for corner in 0..own.cell.corner_count() {
-            let mut arms = edges.iter().filter_map(|edge| arm(edge, corner));
+            let mut arms = edges.iter().filter_map(|edge| arm(edge, corner)).filter(|arm| is_held(nodes[arm[2]]));
             let (Some(one), Some(other)) = (arms.next(), arms.next()) else { continue };
             let tangent = |arm: &[usize]| -> DVec3 { arm.iter().zip(&slopes).map(|(&n, &s)| at(nodes[n]) * s).sum() };
             let chord = |arm: &[usize]| at(nodes[arm[1]]) - at(nodes[arm[0]]);

@@ -111,7 +111,7 @@ fn project(section: &Section, folder: &Path) -> (usize, usize) {
         numbers.sort_unstable();
         numbers.dedup();
         nodes += numbers.len();
-        let place = |n: usize| level.displaced(NodeId::new(n).unwrap());
+        let place = |n: usize| level.displaced(n);
         let off = |n: &&usize| own.distance(place(**n)) > 1e-9 * model.diagonal();
         astray += numbers.iter().filter(off).count();
     }

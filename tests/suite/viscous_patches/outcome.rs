@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use glam::DVec3;
+use sagitta::curve::recover::Departure;
 use sagitta::curve::{Curved, Job};
 use sagitta::element::Order;
 use sagitta::smooth::Summary;
@@ -22,7 +23,7 @@ pub struct Outcome {
     /// Elements found invalid by sampling.
     pub inverted: usize,
     /// Middles of wall faces that are off the CAD, and the share of the displacement that they have left.
-    pub off_cad: Vec<(DVec3, f64)>,
+    pub off_cad: Vec<(DVec3, Departure)>,
     /// Before and after smoothing.
     pub quality: [Summary; 2],
     pub sweeps: usize,
@@ -61,12 +62,12 @@ pub fn files(case: &Case, folder: &Path) -> [PathBuf; 2] {
     ["igs", "msh"].map(|extension| folder.join(format!("{}.{extension}", case.seed)))
 }
 
-fn off_cad(curved: &Curved) -> Vec<(DVec3, f64)> {
+fn off_cad(curved: &Curved) -> Vec<(DVec3, Departure)> {
     let middle = |face: usize| {
         let corners = &curved.boundary.corners[face];
         corners.iter().map(|n| curved.straight[n.index()]).sum::<DVec3>() / corners.len() as f64
     };
-    curved.off_cad.iter().map(|off| (middle(off.face), off.fraction)).collect()
+    curved.off_cad.iter().map(|off| (middle(off.face), off.departure)).collect()
 }
 
 impl fmt::Display for Outcome {
@@ -85,10 +86,10 @@ impl fmt::Display for Outcome {
         if self.unproven + self.inverted > 0 {
             write!(f, "; {} elements not proven valid, {} found invalid", self.unproven, self.inverted)?;
         }
-        if let Some((place, fraction)) = self.off_cad.first() {
+        if let Some((place, departure)) = self.off_cad.first() {
             let count = self.off_cad.len();
             write!(f, "; {count} wall faces off the CAD, the elements on them would be invalid: at {place:.2}")?;
-            write!(f, " {fraction:.2} of the displacement is left")?;
+            write!(f, " {departure:?}")?;
         }
         Ok(())
     }
