@@ -9,7 +9,7 @@ pub struct Settings {
     pub threshold: f64,
     /// Weight of shape in equation (2), 0 to 1; `None` is `(p - 1) / p`.
     pub alpha: Option<f64>,
-    /// Most sweeps over the active nodes, all stages together. Default 200.
+    /// Most sweeps over the active nodes, all stages together; those over few of the nodes count as less. Default 200.
     pub max_sweeps: usize,
     /// Density of the closing survey: this many times `p` divisions an edge. Default 4.
     pub survey_factor: usize,

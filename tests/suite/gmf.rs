@@ -153,7 +153,14 @@ fn other_programs_read_what_is_written() {
     for (path, mesh) in &files {
         let name = path.display();
         let of = |reader: &str| &found[path.to_str().unwrap()][reader];
-        if mesh.order() == Order::LINEAR {
+        let text = path.extension().is_some_and(|ending| ending == "mesh");
+        if text && std::fs::read_to_string(path).unwrap().contains("VerticesOnGeometric") {
+            assert_eq!(
+                of("meshio")["error"],
+                "SystemExit: 1",
+                "{name}: docs/formats.md says that meshio cannot read it"
+            );
+        } else if mesh.order() == Order::LINEAR {
             let theirs = of("meshio");
             assert_eq!(theirs["nodes"], mesh.points().len(), "{name}: {theirs}");
             for (cell, word) in
@@ -174,5 +181,5 @@ fn other_programs_read_what_is_written() {
             by_gmsh += 1;
         }
     }
-    assert_eq!((by_meshio, by_gmsh), (8, 2));
+    assert_eq!((by_meshio, by_gmsh), (7, 2));
 }

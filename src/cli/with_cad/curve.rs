@@ -78,7 +78,7 @@ pub(in crate::cli) struct Options {
     /// Write the costs after each sweep, with the time, as CSV
     #[arg(long, value_name = "T.csv")]
     trace: Option<PathBuf>,
-    /// Largest number of sweeps over the active nodes at each order
+    /// Largest number of sweeps at each order; one over less than a twentieth of the nodes counts as less, a quarter at least
     #[arg(long, value_name = "N", default_value_t = 200)]
     max_sweeps: usize,
     /// Divisions of an edge at which costs are surveyed in the end, in multiples of the order

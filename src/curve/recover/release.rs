@@ -14,23 +14,36 @@ use crate::smooth;
 
 /// Costs good enough where the order begins anew.
 const CALM: f64 = 0.5;
-/// Costs good enough beside nodes that are put back.
-const ENOUGH: f64 = 0.3;
+/// Costs good enough beside nodes that are drawn to the CAD or put back.
+const ENOUGH: f64 = 0.35;
+/// Share of their way to the CAD that released nodes are drawn at first, and its share where that is too far.
+const DRAW: f64 = 0.5;
+/// Shorter ones are not tried.
+const SHORTEST_DRAW: f64 = 0.1;
+/// Times that they are drawn at most.
+const DRAWS: usize = 6;
 /// Released nodes that are no farther from their place than this share of their displacement are put back, fewer where that fails.
 const HARDLY: [f64; 3] = [0.5, 0.1, 0.02];
 
+/// Where more elements fail than this, and than that fraction of all, the trouble is not local.
+const MOST: usize = 200;
+/// See [`MOST`].
+const MOST_OF_ALL: f64 = 2e-3;
 /// Rings of elements around released nodes, and elements that fail, in which the order begins anew.
 const RINGS: usize = 6;
 
 impl Recovery<'_, '_> {
     /// Releases wall nodes at the elements that fail or are below the floor; where that does not end in a proof, nothing is changed.
     pub(super) fn release(&mut self) {
-        if self.below(self.level.case.settings.floor).is_empty() || self.smoothed.stopped {
+        let poor = self.below(self.level.case.settings.floor).len();
+        let local = MOST.max((MOST_OF_ALL * self.smoothed.costs.len() as f64) as usize);
+        if poor == 0 || poor > local || self.smoothed.stopped {
             return;
         }
         let had = if self.proof.holds() { self.smoothed.end.worst() } else { 0.0 };
         let _ = self.attempt(had.max(0.0), |recovery| {
             recovery.release_step_by_step();
+            recovery.draw();
             recovery.reattach();
         });
     }
@@ -52,6 +65,41 @@ impl Recovery<'_, '_> {
         }
     }
 
+    /// Draws released nodes nearer to their places on the CAD, as far as the costs beside them stay good enough.
+    fn draw(&mut self) {
+        let own = &self.level.case.settings.smoothing;
+        let settings = smooth::Settings { threshold: ENOUGH.min(own.threshold), ..self.closer() };
+        let least = self.smoothed.end.worst().min(ENOUGH).max(self.floor());
+        let mut step = DRAW;
+        for _ in 0..DRAWS {
+            if step < SHORTEST_DRAW || !self.proof.holds() || self.smoothed.stopped {
+                break;
+            }
+            let nodes: Vec<usize> = self.level.wall.released().collect();
+            let tried = self.attempt(least, |recovery| {
+                recovery.move_to_cad(&nodes, step);
+                recovery.smooth_again(&settings);
+            });
+            if tried.is_err() {
+                step *= DRAW;
+            }
+        }
+    }
+
+    /// Moves released nodes this share of their way to their places on the CAD, and carries the volume along.
+    fn move_to_cad(&mut self, nodes: &[usize], share: f64) {
+        let places: Vec<DVec3> = nodes.iter().map(|&n| self.level.wall.displacement(n)).collect();
+        nodes.iter().for_each(|&n| self.level.wall.displace(n, self.level.curved[n] - self.level.straight()[n]));
+        let before = self.carried();
+        for (&n, &place) in nodes.iter().zip(&places) {
+            let moved = self.level.wall.displacement(n).lerp(place, share);
+            self.level.wall.displace(n, moved);
+            self.level.curved[n] = self.level.displaced(n);
+        }
+        self.carry_on(&before);
+        nodes.iter().zip(places).for_each(|(&n, place)| self.level.wall.displace(n, place));
+    }
+
     /// Puts released nodes back on the CAD that hardly left it, as many as can be.
     fn reattach(&mut self) {
         let own = &self.level.case.settings.smoothing;
@@ -69,26 +117,14 @@ impl Recovery<'_, '_> {
                 break;
             }
             let tried = self.attempt(self.floor(), |recovery| {
-                recovery.put_back(&nodes);
+                recovery.move_to_cad(&nodes, 1.0);
+                nodes.iter().for_each(|&n| recovery.level.wall.reattach(n));
                 recovery.smooth_again(&settings);
             });
             if tried.is_ok() {
                 break;
             }
         }
-    }
-
-    /// Puts released nodes at their places on the CAD, holds them there, and carries the volume along.
-    fn put_back(&mut self, nodes: &[usize]) {
-        let places: Vec<DVec3> = nodes.iter().map(|&n| self.level.wall.displacement(n)).collect();
-        nodes.iter().for_each(|&n| self.level.wall.displace(n, self.level.curved[n] - self.level.straight()[n]));
-        let before = self.carried();
-        for (&n, place) in nodes.iter().zip(places) {
-            self.level.wall.displace(n, place);
-            self.level.wall.reattach(n);
-            self.level.curved[n] = self.level.displaced(n);
-        }
-        self.carry_on(&before);
     }
 
     /// The floor, or what the smallest cost is where that is less.
