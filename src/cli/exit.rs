@@ -8,9 +8,9 @@ pub(super) const FINDINGS: u8 = 1;
 pub(super) const COULD_NOT_RUN: u8 = 2;
 /// Certified, but some boundary faces are off the CAD.
 pub(super) const OFF_CAD: u8 = 3;
-/// Not every element is proven valid.
+/// Not every element is proven valid, or not every face on the CAD where that is required.
 pub(super) const NOT_CERTIFIED: u8 = 4;
-/// Ended before it was done; certified.
+/// Ended before it was done; certified. Faces may be off the CAD.
 pub(super) const STOPPED: u8 = 5;
 /// Interrupted twice: ended at once, nothing was written.
 pub(super) const INTERRUPTED: u8 = 130;
@@ -22,8 +22,10 @@ pub(super) fn meaning(code: u8) -> &'static str {
         FINDINGS => "the linkage file has errors or warnings (validate)",
         COULD_NOT_RUN => "could not run: wrong options or bad input; nothing is written",
         OFF_CAD => "certified, but some boundary faces are off the CAD (curve)",
-        NOT_CERTIFIED => "not all elements (project: closest points) are proven",
-        STOPPED => "stopped early: limit or interrupt; certified (curve)",
+        NOT_CERTIFIED => {
+            "not all elements (project: closest points) are proven; curve --require-all: not all faces are on the CAD"
+        }
+        STOPPED => "stopped early: limit or interrupt; certified, and what is off the CAD listed as with 3 (curve)",
         _ => "interrupted twice: ended at once, nothing is written",
     }
 }

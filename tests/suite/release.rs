@@ -77,5 +77,9 @@ fn only_faces_at_the_cornered_element_leave_the_cad() {
         let least = number(&report, "/smoothing/end/c_jac").min(number(&report, "/smoothing/end/c_wcn"));
         assert!(least >= floor.parse().unwrap(), "P{order}: {told}");
         sagitta(args!["check", out].iter()).expect(0);
+        std::fs::remove_file(&out).unwrap();
+        let required = sagitta(options.iter().chain(&more).chain(&args!["--require-all"]));
+        required.expect(if code == 0 { 0 } else { 4 });
+        assert_eq!(out.exists(), code == 0, "P{order}");
     }
 }

@@ -90,6 +90,9 @@ pub(in crate::cli) struct Options {
     /// Threads to use [default: all cores]
     #[arg(long, value_name = "N")]
     threads: Option<NonZeroUsize>,
+    /// Write nothing, and end with exit code 4, where boundary faces that belong to the CAD are not on it
+    #[arg(long)]
+    require_all: bool,
     /// Write the mesh even if not all elements are proven valid and all walls free of folds
     #[arg(long)]
     keep_invalid: bool,
@@ -196,8 +199,8 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     monitor.finish();
     let curved = curved?;
     let report = report(&job, &curved);
-    let certified = curved.is_certified();
-    if certified || options.keep_invalid {
+    let missing = missing(options, &curved);
+    if missing.is_none() || options.keep_invalid {
         write(options, output, &curved)?;
     }
     if let Some(path) = &options.report {
@@ -208,13 +211,28 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
         print(&stop.to_string())?;
     }
     let written = output.display();
-    if !certified && !options.keep_invalid {
-        let why = "not written, as not all elements are proven valid and all walls free of folds";
-        message(format_args!("sagitta: {written}: {why} (--keep-invalid writes it)"));
-    } else {
-        print(&format!("written: {written}"))?;
+    match missing {
+        Some(why) if !options.keep_invalid => {
+            message(format_args!("sagitta: {written}: not written, as {why} (--keep-invalid writes it)"));
+        }
+        _ => print(&format!("written: {written}"))?,
     }
-    Ok(exit_code(&curved))
+    Ok(if missing.is_some() { NOT_CERTIFIED } else { exit_code(&curved) })
+}
+
+/// What of all that is asked for a mesh does not have.
+fn missing(options: &Options, curved: &Curved) -> Option<&'static str> {
+    if !curved.is_certified() {
+        Some("not all elements are proven valid and all walls free of folds")
+    } else if options.require_all && !is_all_on_cad(curved) {
+        Some("not all boundary faces that belong to the CAD are on it")
+    } else {
+        None
+    }
+}
+
+fn is_all_on_cad(curved: &Curved) -> bool {
+    curved.off_cad.is_empty() && curved.open_faces.is_empty()
 }
 
 /// Prints which patches lie on which CAD faces.
@@ -234,11 +252,9 @@ fn write(options: &Options, output: &Path, curved: &Curved) -> Result<(), Failur
 }
 
 fn exit_code(curved: &Curved) -> u8 {
-    if !curved.is_certified() {
-        NOT_CERTIFIED
-    } else if curved.smoothed.stopped {
+    if curved.smoothed.stopped {
         STOPPED
-    } else if !curved.off_cad.is_empty() || !curved.open_faces.is_empty() {
+    } else if !is_all_on_cad(curved) {
         OFF_CAD
     } else {
         DONE
