@@ -22,10 +22,8 @@ pub(super) fn meaning(code: u8) -> &'static str {
         FINDINGS => "the linkage file has errors or warnings (validate)",
         COULD_NOT_RUN => "could not run: wrong options or bad input; nothing is written",
         OFF_CAD => "certified, but some boundary faces are off the CAD (curve)",
-        NOT_CERTIFIED => {
-            "not all elements (project: closest points) are proven; curve --require-all: not all faces are on the CAD"
-        }
-        STOPPED => "stopped early: limit or interrupt; certified, and what is off the CAD listed as with 3 (curve)",
+        NOT_CERTIFIED => "not all is proven (project: closest points), or --require-all is not met",
+        STOPPED => "stopped early: limit or interrupt; certified, faces as with 3 (curve)",
         _ => "interrupted twice: ended at once, nothing is written",
     }
 }
