@@ -54,7 +54,7 @@ impl Settings {
     /// Whatever a checkpoint depends on beside the mesh and its boundary.
     pub(crate) fn fingerprint(&self) -> String {
         let smooth::Settings { threshold, alpha, max_sweeps: _, survey_factor, engine } = &self.smoothing;
-        let held = (self.freeze_linear, self.freeze_walls, self.curve_layers, self.direct);
+        let held = (self.freeze_linear, self.freeze_walls, self.curve_layers, self.direct, self.floor);
         format!("{:?}", (threshold, alpha, survey_factor, engine, held))
     }
 }

@@ -59,12 +59,13 @@ impl Pace {
     /// Takes sweeps into account that moved this many of the mesh's nodes.
     pub(super) fn spend(&mut self, sweeps: usize, active: usize, nodes: usize) {
         let share = MANY * active as f64 / nodes.max(1) as f64;
-        self.spent += sweeps * ((QUARTERS as f64 * share).ceil() as usize).clamp(1, QUARTERS);
+        let quarters = sweeps * ((QUARTERS as f64 * share).ceil() as usize).clamp(1, QUARTERS);
+        self.spent = self.spent.saturating_add(quarters);
     }
 
     /// Sweeps that are left of so many.
     pub(super) fn left(self, max_sweeps: usize) -> usize {
-        (QUARTERS * max_sweeps).saturating_sub(self.spent).div_ceil(QUARTERS)
+        QUARTERS.saturating_mul(max_sweeps).saturating_sub(self.spent).div_ceil(QUARTERS)
     }
 
     /// That of a stage that begins.

@@ -417,7 +417,7 @@ impl Run<'_, '_> {
         Progress {
             stage: if stage == Stage::Shape { 1 } else { 2 },
             sweep: self.sweeps,
-            max_sweeps: self.sweeps + self.pace.left(self.settings.max_sweeps),
+            max_sweeps: self.sweeps.saturating_add(self.pace.left(self.settings.max_sweeps)),
             active_nodes: 0,
             worst: self.lowest(),
             costs: [summary.c_wcn, summary.c_jac],
