@@ -1,6 +1,7 @@
 //! What a linkage file, or the tags of a mesh file, say about where mesh entities lie: not yet checked against the CAD.
 
 use cad::{EdgeId, EntityId, FaceId, Model, VertexId};
+use rustc_hash::FxHashSet;
 
 use crate::element::Cell;
 use crate::mesh::{Boundary, EntityKey, Mesh, NodeId, Periodic};
@@ -47,6 +48,12 @@ impl Candidates {
         let nodes = points.iter().map(|point| (point.entity, point.nodes[0]));
         candidates.points = gather(nodes, |tag| VertexId::from_tag(tag).filter(|&id| model.vertex(id).is_some()));
         candidates
+    }
+
+    /// Boundary faces that are said to lie on CAD faces.
+    pub(super) fn linked_faces(&self) -> FxHashSet<usize> {
+        let linked = self.sheets.iter().filter(|sheet| !sheet.entities.is_empty());
+        linked.flat_map(|sheet| sheet.items.iter().copied()).collect()
     }
 }
 

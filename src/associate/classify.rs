@@ -1,14 +1,37 @@
-//! Where the association of a mesh comes from: a linkage file, its entity tags, or its geometry.
+//! Where the association of a mesh comes from: a linkage file, its entity tags, and its geometry, each for what those before leave open.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use cad::Model;
+use cad::{Aabb, EntityId, Kind, Model};
 
-use super::witnesses::combined;
+use super::witnesses::{combined, completed};
 use super::{
     AssociateError, Association, Candidates, Inference, Linkage, LinkageError, Tolerance, associate, infer, linked,
 };
-use crate::mesh::{Boundary, Mesh};
+use crate::mesh::{Boundary, EntityKey, Mesh};
+
+/// What is asked for an association.
+#[derive(Clone, Copy, Debug)]
+pub struct Sources<'a> {
+    /// A MeshLink document.
+    pub linkage: Option<&'a Linkage>,
+    /// Whether the mesh's entity tags may be the CAD's numbers.
+    pub by_tags: bool,
+    /// How far a node may be from its CAD entity where geometry decides; [`Tolerance::of`] the mesh where it is not given.
+    pub tolerance: Option<f64>,
+    /// How far a node may be from what a file or tag names; fraction of the mesh's bounding-box diagonal.
+    pub max_offset: f64,
+    /// Patches that stay straight.
+    pub straight: &'a BTreeSet<EntityKey>,
+}
+
+impl<'a> Sources<'a> {
+    /// Linkage, tags and geometry at their default tolerances; `straight` patches stay straight.
+    #[must_use]
+    pub fn new(linkage: Option<&'a Linkage>, straight: &'a BTreeSet<EntityKey>) -> Sources<'a> {
+        Sources { linkage, by_tags: true, tolerance: None, max_offset: 1e-3, straight }
+    }
+}
 
 /// Candidates, checked against the CAD, and where they come from.
 #[derive(Debug)]
@@ -17,7 +40,7 @@ pub struct Classified {
     pub candidates: Candidates,
     /// The association that they make.
     pub association: Association,
-    /// What was inferred, where neither a linkage file nor tags said it.
+    /// What was inferred, where linkage and tags did not say all.
     pub inference: Option<Inference>,
     /// Where they come from, for people.
     pub source: String,
@@ -34,79 +57,165 @@ pub enum ClassifyError {
     Associate(#[from] AssociateError),
 }
 
-/// Classifies the boundary of a mesh on its CAD: by the linkage where there is one, else by entity tags where they are this CAD's, else
-/// by geometry.
-///
-/// `choose` may strike out candidates before they are checked against
-/// the CAD. `max_offset` is that of [`associate`].
+/// Classifies the boundary of a mesh on its CAD: by the linkage where there is one, else by entity tags where they are this CAD's; what these
+/// leave open, by geometry.
 ///
 /// # Errors
 /// [`ClassifyError`]; where tags do not hold and geometry does not decide either, what is wrong with the tags.
 pub fn classify(
-    linkage: Option<&Linkage>,
+    sources: &Sources<'_>,
     mesh: &Mesh,
     boundary: &Boundary,
     model: &Model,
-    max_offset: f64,
-    choose: &dyn Fn(&mut Candidates),
 ) -> Result<Classified, ClassifyError> {
-    let held = |mut candidates: Candidates, inference: Option<Inference>, source: String| {
-        choose(&mut candidates);
-        let mut association = associate(mesh, boundary, model, &candidates, max_offset)?;
-        association.notes.extend(model.losses());
-        association.notes.append(&mut candidates.notes);
-        Ok::<_, AssociateError>(Classified { candidates, association, inference, source })
-    };
-    if let Some(linkage) = linkage {
-        let (candidates, file) = (linked(linkage, mesh, boundary, model)?, linkage.file.display());
-        let trusted = candidates.trusted;
-        let mut classified = held(candidates, None, format!("linkage file {file}"))?;
-        if !trusted {
+    let classifier = Classifier { sources, mesh, boundary, model };
+    match sources.linkage {
+        Some(linkage) => classifier.by_linkage(linkage),
+        None => Ok(classifier.without_linkage()?),
+    }
+}
+
+struct Classifier<'a> {
+    sources: &'a Sources<'a>,
+    mesh: &'a Mesh,
+    boundary: &'a Boundary,
+    model: &'a Model,
+}
+
+impl Classifier<'_> {
+    fn by_linkage(&self, linkage: &Linkage) -> Result<Classified, ClassifyError> {
+        let (candidates, file) = (linked(linkage, self.mesh, self.boundary, self.model)?, linkage.file.display());
+        let source = format!("linkage file {file}");
+        let mut by_file = self.held(candidates.clone(), None, source.clone())?;
+        if !candidates.trusted {
             let note = "names another CAD file; its references were looked up in the given one";
-            classified.association.notes.push(format!("{file} {note}"));
+            by_file.association.notes.push(format!("{file} {note}"));
         }
-        return Ok(classified);
+        if self.is_whole(&candidates) {
+            return Ok(by_file);
+        }
+        let inference = self.infer();
+        let Some((all, count)) = completed(&candidates, &inference, self.boundary, self.sources.straight) else {
+            by_file.inference = Some(self.left(inference, &candidates));
+            return Ok(by_file);
+        };
+        let inference = self.left(inference, &candidates);
+        let mut classified = self.held(all, Some(inference), format!("{source}, and geometry"))?;
+        let note = format!("{file} says nothing of {count} boundary faces that lie on the CAD; geometry says where");
+        classified.association.notes.push(note);
+        Ok(classified)
     }
-    let tags = Candidates::by_tags(mesh, boundary, model);
-    let mut asked = tags.clone();
-    choose(&mut asked);
-    let by_tags = match held(tags.clone(), None, "the mesh's entity tags".into()) {
-        Ok(classified) if asked.sheets.iter().all(|sheet| !sheet.entities.is_empty()) => return Ok(classified),
-        Err(error) if !error.tags_are_of_no_use() => return Err(error.into()),
-        other => other,
-    };
-    // Faces of which the tags say nothing that holds are left to geometry.
-    let mut inference = infer(mesh, boundary, model, &Tolerance::of(mesh));
-    if by_tags.is_err() && !is_usable(boundary, &inference) {
-        return Ok(by_tags?); // mesh and CAD of different sizes or positions may have some faces in common
+
+    fn without_linkage(&self) -> Result<Classified, AssociateError> {
+        let (mesh, boundary, model) = (self.mesh, self.boundary, self.model);
+        let tags = if self.sources.by_tags { Candidates::by_tags(mesh, boundary, model) } else { Candidates::default() };
+        let by_tags = self.held(tags.clone(), None, "the mesh's entity tags".into());
+        match &by_tags {
+            Ok(_) if self.is_whole(&tags) => return by_tags,
+            Err(error) if !error.tags_are_of_no_use() => return by_tags,
+            _ => {}
+        }
+        let mut inference = self.infer();
+        if by_tags.is_err() && !self.is_usable(&inference) {
+            // Mesh and CAD of different sizes or positions may have some faces in common.
+            return by_tags.map_err(|error| self.explained(error, &inference));
+        }
+        let combined = combined(&tags, &mut inference, mesh, boundary, model, self.sources.max_offset);
+        let Some((candidates, source)) = combined else {
+            let mut classified = by_tags?;
+            classified.inference = Some(inference);
+            return Ok(classified);
+        };
+        let [faces, edges] = [inference.undecided(), inference.edges.len()];
+        let mut classified = self.held(candidates, Some(inference), source.into())?;
+        let why = if self.sources.by_tags { "the mesh's entity tags do not match the CAD's numbers; " } else { "" };
+        classified.association.notes.push(format!(
+            "{why}mesh and CAD were associated by geometry, with {faces} faces and {edges} edges undecided (--dry-run shows the association)"
+        ));
+        Ok(classified)
     }
-    let Some((candidates, source)) = combined(&tags, &mut inference, mesh, boundary, model, max_offset) else {
-        let mut classified = by_tags?;
-        classified.inference = Some(inference);
-        return Ok(classified);
-    };
-    let mut classified = held(candidates, None, source.into())?;
-    let [faces, edges] = [inference.undecided(), inference.edges.len()];
-    classified.association.notes.push(format!(
-        "the mesh's entity tags do not match the CAD's numbers; mesh and CAD were associated by geometry, with {faces} faces and {edges} edges undecided (--dry-run shows the association)"
-    ));
-    classified.inference = Some(inference);
-    Ok(classified)
+
+    fn infer(&self) -> Inference {
+        let tolerance = self.sources.tolerance.map_or_else(|| Tolerance::of(self.mesh), Tolerance::fixed);
+        infer(self.mesh, self.boundary, self.model, &tolerance)
+    }
+
+    /// Checked against the CAD, without what is to stay straight.
+    fn held(
+        &self,
+        mut candidates: Candidates,
+        inference: Option<Inference>,
+        source: String,
+    ) -> Result<Classified, AssociateError> {
+        candidates.leave_straight(self.boundary, self.sources.straight);
+        let offset = self.sources.max_offset;
+        let mut association = associate(self.mesh, self.boundary, self.model, &candidates, offset)?;
+        association.notes.extend(self.model.losses());
+        association.notes.append(&mut candidates.notes);
+        Ok(Classified { candidates, association, inference, source })
+    }
+
+    /// Whether candidates say of every boundary face that is not to stay straight where it lies.
+    fn is_whole(&self, candidates: &Candidates) -> bool {
+        let said = candidates.linked_faces();
+        let stays = |face: usize| self.sources.straight.contains(&self.boundary.faces[face].entity);
+        (0..self.boundary.faces.len()).all(|face| said.contains(&face) || stays(face))
+    }
+
+    /// An inference without doubts of faces of which others say where they lie.
+    fn left(&self, mut inference: Inference, candidates: &Candidates) -> Inference {
+        let said = candidates.linked_faces();
+        inference.faces.retain(|(face, _)| !said.contains(face));
+        inference
+    }
+
+    /// Whether something was decided; and of every patch nearly all or nothing, or else something that no other CAD has by chance.
+    fn is_usable(&self, inference: &Inference) -> bool {
+        let mut counts: BTreeMap<_, [usize; 2]> = BTreeMap::new();
+        for face in &self.boundary.faces {
+            counts.entry(face.entity).or_default()[0] += 1;
+        }
+        for (face, _) in &inference.faces {
+            counts.entry(self.boundary.faces[*face].entity).or_default()[1] += 1;
+        }
+        let decided = |[all, open]: &[usize; 2]| *all - *open;
+        let whole = |count: &[usize; 2]| decided(count) == 0 || decided(count) as f64 >= DECIDED * count[0] as f64;
+        counts.values().any(|count| decided(count) > 0)
+            && (counts.values().all(whole) || self.has_own_shape(&inference.candidates))
+    }
+
+    /// Whether faces were found on CAD that a scaled or shifted copy of it does not have in common with it: of a shape that has a size.
+    fn has_own_shape(&self, candidates: &Candidates) -> bool {
+        let has_size = |entity: &EntityId| {
+            let EntityId::Face(id) = *entity else { return false };
+            self.model.face(id).is_some_and(|face| !matches!(face.kind, Kind::Plane | Kind::Cone))
+        };
+        let own = candidates.sheets.iter().filter(|sheet| sheet.entities.iter().any(has_size));
+        own.map(|sheet| sheet.items.len()).sum::<usize>() >= OWN_SHAPE
+    }
+
+    /// What is wrong, where neither tags nor geometry find anything: units, or how far the mesh is off the CAD.
+    fn explained(&self, error: AssociateError, inference: &Inference) -> AssociateError {
+        if !matches!(error, AssociateError::Nothing { .. }) {
+            return error;
+        }
+        let size = Aabb::of_points(self.mesh.points().iter().copied()).diagonal();
+        let found_none = inference.candidates.sheets.is_empty();
+        if let Some(factor) = cad::unit_factor(size, self.model.diagonal()).filter(|_| found_none) {
+            return AssociateError::Scale { mesh: size, cad: self.model.diagonal(), factor };
+        }
+        let beside = inference.faces.iter().filter_map(|(face, doubt)| Some((*face, doubt.distance()?)));
+        match beside.max_by(|a, b| a.1.total_cmp(&b.1)) {
+            Some((face, distance)) => {
+                let label = self.mesh.label(self.boundary.faces[face].entity);
+                AssociateError::Apart { label, distance, tolerance: 2.0 * distance }
+            }
+            None => error,
+        }
+    }
 }
 
 /// Where tags do not hold, geometry is used if at least this fraction of the faces of every patch that it covers is decided.
 const DECIDED: f64 = 0.9;
-
-/// Whether something was decided, and of every patch nearly all or nothing.
-fn is_usable(boundary: &Boundary, inference: &Inference) -> bool {
-    let mut counts: BTreeMap<_, [usize; 2]> = BTreeMap::new();
-    for face in &boundary.faces {
-        counts.entry(face.entity).or_default()[0] += 1;
-    }
-    for (face, _) in &inference.faces {
-        counts.entry(boundary.faces[*face].entity).or_default()[1] += 1;
-    }
-    let decided = |[all, open]: &[usize; 2]| *all - *open;
-    counts.values().any(|count| decided(count) > 0)
-        && counts.values().all(|count| decided(count) == 0 || decided(count) as f64 >= DECIDED * count[0] as f64)
-}
+/// This many faces on CAD of a shape with a size are no chance.
+const OWN_SHAPE: usize = 3;

@@ -40,6 +40,12 @@ pub enum AssociateError {
         "the mesh edge {a}-{b} lies between {first} and {second}, but on no CAD edge that they share: associate it with a curve by a linkage file, or mesh both sides as one surface"
     )]
     NoCurve { a: u64, b: u64, first: String, second: String },
+    /// A mesh beside the CAD, not on it.
+    #[error(
+        "no part of the mesh lies on the CAD: {label} runs beside it, up to {distance:.3e} off; if the mesh was made on this CAD, give \
+         --tolerance {tolerance:.1e}"
+    )]
+    Apart { label: String, distance: f64, tolerance: f64 },
     /// CAD geometry that cannot be asked.
     #[error("{label}: {cause}")]
     Group { label: String, cause: String },

@@ -39,20 +39,20 @@ use crate::mesh::Plane;
 pub use bind::associate;
 pub use candidates::{Candidate, Candidates};
 pub use choice::{Choice, UnknownPatch};
-pub use classify::{Classified, ClassifyError, classify};
+pub use classify::{Classified, ClassifyError, Sources, classify};
 pub use document::{TooLarge, Written, document};
 pub use error::AssociateError;
 pub use infer::{Doubt, Incidence, Inference, ON_CAD, Tolerance, infer};
 pub use joint::{Joints, SHARP, normal_at};
 pub use linkage::{Linkage, LinkageError, linked, models_of, own_geometry, same_file};
 pub use numbering::{Numbering, Part, UnknownZone};
-pub use open::{open_faces, open_notes};
+pub use open::{OpenFace, open_faces, open_notes};
 pub use path::paths;
 pub use periodic::{NotPeriodic, PeriodicSheet, periodic_records, periodic_sheets};
 pub use propose::{Proposal, propose};
 pub use side::{Side, sides};
 pub use sizes::check_boxes;
-pub use summary::{Patch, SUMMARY_SCHEMA, Summary, Undecided, summary};
+pub use summary::{Patch, SUMMARY_SCHEMA, SpotReport, Summary, Undecided, summary};
 
 /// A set of CAD faces that mesh faces lie on.
 #[derive(Debug)]

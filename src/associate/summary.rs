@@ -29,8 +29,35 @@ pub struct Summary {
     pub points: usize,
     /// What could not be decided; faces whose points are not on the CAD at all are counted in their patch only.
     pub undecided: Vec<Undecided>,
+    /// Where the CAD leaves the elements little room, least first: `curve --dry-run` looks for it, `link` does not.
+    pub spots: Vec<SpotReport>,
     /// What a user should know.
     pub notes: Vec<String>,
+}
+
+/// A place where the CAD leaves the elements little room.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct SpotReport {
+    /// What it is: `element corner`, `face corner` or `column`.
+    pub kind: &'static str,
+    /// The element or boundary face, by kind and number in the file.
+    pub element: String,
+    /// The number of the node at the corner; nothing for a column.
+    pub node: Option<u64>,
+    /// That node, or the middle of the column's wall face.
+    pub position: [f64; 3],
+    /// Room between the tangents of its edges on the CAD, in that between their chords; 0 and less is impossible. Nothing for a column.
+    pub q: Option<f64>,
+    /// The longest edge there over the CAD's least radius of curvature. Nothing for a column.
+    pub bend: Option<f64>,
+    /// Displacement of a column's ends towards each other over its height; 1 and more is impossible. Nothing for a corner.
+    pub squeeze: Option<f64>,
+    /// Whether wall nodes have to slide or to leave the CAD there for the elements to be valid.
+    pub impossible: bool,
+    /// The CAD that it lies on.
+    pub cad: String,
+    /// What can be done to the mesh.
+    pub remedy: &'static str,
 }
 
 /// A patch and the CAD faces that it lies on.
@@ -122,6 +149,7 @@ pub fn summary(
         edges: candidates.strings.iter().filter(|s| !s.entities.is_empty()).map(|s| s.items.len()).sum(),
         points: candidates.points.iter().filter(|p| !p.entities.is_empty()).map(|p| p.items.len()).sum(),
         undecided,
+        spots: Vec::new(),
         notes: Vec::new(),
     }
 }

@@ -1,10 +1,12 @@
-//! Tags and geometry as two witnesses of what lies on what: each face goes by the one that holds.
+//! Linkage, tags and geometry as witnesses of what lies on what: each face goes by the strongest one that holds.
+
+use std::collections::BTreeSet;
 
 use cad::Model;
 use rustc_hash::FxHashSet;
 
 use super::{Candidate, Candidates, Inference, associate};
-use crate::mesh::{Boundary, Mesh};
+use crate::mesh::{Boundary, EntityKey, Mesh, NodeId};
 
 /// The candidates of geometry, and where it leaves faces open those of the tags that hold; with where they come from, for people. `None`
 /// where geometry knows of no face that the tags do not know of.
@@ -38,4 +40,51 @@ pub(super) fn combined(
         }
     }
     Some((candidates, if said.is_empty() { "geometry" } else { "geometry and the mesh's entity tags" }))
+}
+
+/// The candidates of a linkage file, and those of geometry for the faces of which it says nothing, with their number. `None` where geometry knows of none
+/// either.
+pub(super) fn completed(
+    linkage: &Candidates,
+    inference: &Inference,
+    boundary: &Boundary,
+    straight: &BTreeSet<EntityKey>,
+) -> Option<(Candidates, usize)> {
+    let said = linkage.linked_faces();
+    let is_left = |face: &usize| !said.contains(face) && !straight.contains(&boundary.faces[*face].entity);
+    let mut candidates = linkage.clone();
+    let mut left = FxHashSet::default();
+    for sheet in &inference.candidates.sheets {
+        let items: Vec<usize> = sheet.items.iter().copied().filter(is_left).collect();
+        left.extend(items.iter().copied());
+        if !items.is_empty() {
+            candidates.sheets.push(Candidate { items, ..sheet.clone() });
+        }
+    }
+    let edges: FxHashSet<usize> = strings(&linkage.strings, boundary).collect();
+    let beside_left = |ends: &[NodeId; 2]| {
+        let edge = boundary.edge(*ends);
+        edge.is_some_and(|e| !edges.contains(&e) && boundary.edge_faces[e].iter().any(|face| left.contains(face)))
+    };
+    for string in &inference.candidates.strings {
+        let items: Vec<[NodeId; 2]> = string.items.iter().copied().filter(beside_left).collect();
+        if !items.is_empty() {
+            candidates.strings.push(Candidate { items, ..string.clone() });
+        }
+    }
+    let nodes: FxHashSet<NodeId> = left.iter().flat_map(|&face| boundary.corners[face].iter().copied()).collect();
+    let known: FxHashSet<NodeId> = linkage.points.iter().flat_map(|point| point.items.iter().copied()).collect();
+    for point in &inference.candidates.points {
+        let items: Vec<NodeId> =
+            point.items.iter().copied().filter(|node| nodes.contains(node) && !known.contains(node)).collect();
+        if !items.is_empty() {
+            candidates.points.push(Candidate { items, ..point.clone() });
+        }
+    }
+    (!left.is_empty()).then_some((candidates, left.len()))
+}
+
+/// The boundary edges of strings.
+fn strings<'c>(strings: &'c [Candidate<[NodeId; 2]>], boundary: &'c Boundary) -> impl Iterator<Item = usize> + 'c {
+    strings.iter().flat_map(|string| &string.items).filter_map(|&ends| boundary.edge(ends))
 }

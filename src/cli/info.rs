@@ -11,7 +11,7 @@ use crate::cli::exit::DONE;
 use crate::cli::output::{Failure, bounds, print};
 use crate::element::Cell;
 use crate::formats;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Skin};
 
 /// Options of `sagitta info`.
 #[derive(Args)]
@@ -73,7 +73,8 @@ fn mesh(mesh: &Mesh) -> Result<String, Failure> {
     for ((entity, noun), count) in patches {
         writeln!(text, "  {entity}: {count} {noun} {}", mesh.names_of(entity).join(","))?;
     }
-    for note in mesh.notes() {
+    let skin = Skin::of(mesh).notes(mesh);
+    for note in mesh.notes().iter().chain(&skin) {
         writeln!(text, "  note: {note}")?;
     }
     Ok(text)

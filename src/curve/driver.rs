@@ -12,7 +12,7 @@ use super::proof::Proof;
 use super::recover::{OffCadFace, Recovered, recover};
 use super::settings::Settings;
 use super::wall_state::Wall;
-use crate::associate::{Association, Linkage};
+use crate::associate::{Association, Linkage, OpenFace};
 use crate::certify::{Certificate, Walls};
 use crate::mesh::elevate::Elevated;
 use crate::mesh::{Boundary, Mesh};
@@ -21,7 +21,8 @@ use crate::smooth::{Progress, Smoothed};
 /// A curved mesh and how it came about.
 #[derive(Debug)]
 pub struct Curved {
-    /// The mesh of order p, at its curved coordinates.
+    /// The mesh of order p, at its curved coordinates; sides of the skin that the linear mesh does not mark are marked, see
+    /// [`Mesh::without_unmarked`].
     pub mesh: Mesh,
     /// Straight coordinates of its nodes: the targets.
     pub straight: Vec<DVec3>,
@@ -43,8 +44,8 @@ pub struct Curved {
     pub walls: Walls,
     /// Boundary faces that are off the CAD, so that the elements behind them are valid.
     pub off_cad: Vec<OffCadFace>,
-    /// Boundary faces, by index, that belong to the CAD and stay straight, as it could not be decided on which of its faces they lie.
-    pub open_faces: Vec<usize>,
+    /// Boundary faces that belong to the CAD and stay straight, as it could not be decided on which of its faces they lie.
+    pub open_faces: Vec<OpenFace>,
     /// The CAD's unit, as its file names it.
     pub cad_unit: String,
     /// What the CAD was multiplied by.
@@ -75,7 +76,7 @@ pub fn curve(
 ) -> Result<Curved, Error> {
     let mut clock = Clock::new(observer);
     clock.step(Step::Read);
-    input::check_mesh(&mesh)?;
+    let mesh = input::checked(mesh)?;
     input::check_cad(cad)?;
     clock.step(Step::Associate);
     let associated = Associated::new(&mesh, cad, linkage, settings)?;
@@ -89,7 +90,8 @@ pub(super) fn drive(
     settings: &Settings,
     mut clock: Clock,
 ) -> Result<Curved, Error> {
-    let Associated { boundary, mut association, open_faces, periodic, cad_unit, cad_scale } = associated;
+    let Associated { boundary, classified, open_faces, periodic, cad_unit, cad_scale } = associated;
+    let mut association = classified.association;
     linear.periodic_mut().extend(periodic);
     let case = Case { settings, boundary: &boundary, association: &association };
     let Continued { mut level, mut smoothed, notes, below, lower_orders } =

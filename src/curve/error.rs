@@ -38,6 +38,22 @@ pub enum Error {
         /// The mesh's order.
         order: Order,
     },
+    /// Boundary elements whose edges cross.
+    #[error("{count} boundary elements have the corners of a cell's side in an order in which their edges cross: {listed}; write their corners in order round")]
+    Crossed {
+        /// How many elements.
+        count: usize,
+        /// The first of them, by kind and number.
+        listed: String,
+    },
+    /// Cells that are there twice.
+    #[error("{count} cells have the same corners as another one: {listed}; remove them")]
+    Overlapping {
+        /// How many elements.
+        count: usize,
+        /// The first of them, by kind and number.
+        listed: String,
+    },
     /// The linear mesh is invalid.
     #[error("the linear mesh is itself inverted in {count} elements: {listed}; repair it first")]
     Inverted {

@@ -4,31 +4,44 @@ use cad::Model;
 
 use super::error::Error;
 use super::settings::Settings;
-use crate::associate::{Association, Candidates, Linkage, classify, open_faces, open_notes};
+use crate::associate::{Classified, Linkage, OpenFace, Sources, classify, open_faces, open_notes};
 use crate::certify;
 use crate::element::Order;
-use crate::mesh::{Boundary, Mesh, Periodic};
+use crate::mesh::{Boundary, ElementId, Elements, Mesh, Periodic, Skin};
 
 /// Elements that an error lists by number.
 const LISTED: usize = 10;
 
-/// Refuses a mesh that cannot be curved.
-pub(super) fn check_mesh(linear: &Mesh) -> Result<(), Error> {
+/// A mesh that can be curved, every side of its skin marked by a boundary element; what of it is amiss stands in its notes.
+pub(super) fn checked(linear: Mesh) -> Result<Mesh, Error> {
     if linear.order() != Order::LINEAR {
         return Err(Error::NotLinear { order: linear.order() });
     }
     if !linear.is_volume() {
         return Err(Error::NoVolume);
     }
-    let certificate = certify::mesh(linear, linear.points(), None, &certify::Settings::default());
-    if certificate.holds() {
-        return Ok(());
+    let skin = Skin::of(&linear);
+    if !skin.crossed.is_empty() {
+        let (count, listed) = (skin.crossed.len(), listed(&linear.sides(), &skin.crossed));
+        return Err(Error::Crossed { count, listed });
     }
-    let cells = linear.cells();
-    let some = certificate.failures.iter().take(LISTED).map(|f| format!("{} {}", f.cell, cells.get(f.element).tag));
-    let count = certificate.failures.len();
-    let more = if count > LISTED { ", ..." } else { "" };
-    Err(Error::Inverted { count, listed: some.collect::<Vec<_>>().join(", ") + more })
+    if !skin.overlapping.is_empty() {
+        let (count, listed) = (skin.overlapping.len(), listed(&linear.cells(), &skin.overlapping));
+        return Err(Error::Overlapping { count, listed });
+    }
+    let certificate = certify::mesh(&linear, linear.points(), None, &certify::Settings::default());
+    if certificate.holds() {
+        return Ok(linear.with_unmarked(&skin));
+    }
+    let failures: Vec<ElementId> = certificate.failures.iter().map(|own| own.element).collect();
+    Err(Error::Inverted { count: failures.len(), listed: listed(&linear.cells(), &failures) })
+}
+
+/// The first of some elements, by kind and number.
+fn listed(elements: &Elements, some: &[ElementId]) -> String {
+    let named = some.iter().take(LISTED).map(|&id| format!("{} {}", elements.cell(id), elements.get(id).tag));
+    let more = if some.len() > LISTED { ", ..." } else { "" };
+    named.collect::<Vec<_>>().join(", ") + more
 }
 
 /// Refuses CAD that nothing can be curved onto.
@@ -39,9 +52,9 @@ pub(super) fn check_cad(cad: &Model) -> Result<(), Error> {
 /// A mesh associated with its CAD.
 pub(super) struct Associated {
     pub(super) boundary: Boundary,
-    pub(super) association: Association,
+    pub(super) classified: Classified,
     /// Faces that belong to the CAD and stay straight, as it could not be decided where they lie.
-    pub(super) open_faces: Vec<usize>,
+    pub(super) open_faces: Vec<OpenFace>,
     /// Periodic pairs of which the linkage knows and the mesh does not.
     pub(super) periodic: Vec<Periodic>,
     pub(super) cad_unit: String,
@@ -58,17 +71,17 @@ impl Associated {
     ) -> Result<Associated, Error> {
         let boundary = Boundary::new(linear);
         let straight = settings.patches.straight(linear, &boundary)?;
-        let choose = |candidates: &mut Candidates| candidates.leave_straight(&boundary, &straight);
-        let classified = classify(linkage, linear, &boundary, cad, settings.max_offset, &choose)?;
+        let &Settings { by_tags, tolerance, max_offset, .. } = settings;
+        let sources = Sources { linkage, by_tags, tolerance, max_offset, straight: &straight };
+        let mut classified = classify(&sources, linear, &boundary, cad)?;
         let known: Vec<_> = linear.periodic().iter().map(|pair| pair.slave).collect();
-        let unknown = classified.candidates.periodic.into_iter().filter(|pair| !known.contains(&pair.slave));
-        let periodic = unknown.collect();
-        let mut association = classified.association;
+        let unknown = classified.candidates.periodic.iter().filter(|pair| !known.contains(&pair.slave));
+        let periodic = unknown.cloned().collect();
         let inference = classified.inference.as_ref();
-        let open = |inference| open_faces(&boundary, &association, inference, &straight);
+        let open = |inference| open_faces(linear, &boundary, &classified.association, inference, &straight);
         let open_faces = inference.map_or_else(Vec::new, open);
-        association.notes.extend(open_notes(linear, &boundary, &open_faces));
+        classified.association.notes.extend(open_notes(linear, &boundary, &open_faces));
         let (cad_unit, cad_scale) = (cad.unit().name.clone(), cad.scale());
-        Ok(Associated { association, open_faces, periodic, boundary, cad_unit, cad_scale })
+        Ok(Associated { classified, open_faces, periodic, boundary, cad_unit, cad_scale })
     }
 }

@@ -4,15 +4,18 @@ use std::path::PathBuf;
 
 use cad::{Model, ReadOptions};
 
+use super::curvability::{self, spots};
 use super::driver::{Curved, drive};
 use super::error::{Error, JobError};
-use super::input::{Associated, check_cad, check_mesh};
+use super::input::{Associated, check_cad, checked};
+use super::level::Case;
 use super::observer::{Clock, Observer, Step};
+use super::orders::projected;
 use super::settings::Settings;
-use crate::associate::{self, AssociateError, Linkage, Summary};
+use crate::associate::{self, AssociateError, Classified, Linkage, Summary};
 use crate::element::Order;
 use crate::formats;
-use crate::mesh::{Boundary, Mesh};
+use crate::mesh::Mesh;
 
 /// What is to be curved, and how.
 #[derive(Clone, Debug)]
@@ -56,39 +59,31 @@ impl Job {
         let (linear, cad) = (linear?, cad?);
 
         clock.step(Step::Associate);
-        let associate = |cad: &Model| {
-            let linkage = self.read_linkage()?;
-            Associated::new(&linear, cad, linkage.as_ref(), &self.settings)
-        };
+        let associate = |cad: &Model| Associated::new(&linear, cad, self.read_linkage()?.as_ref(), &self.settings);
         let associated = self.scaled(cad, associate)?.0;
         drive(linear, associated, &self.settings, clock).map_err(|cause| self.error(cause))
     }
 
-    /// What would lie on what: reads and associates, and goes no further.
+    /// What would lie on what, and where the CAD leaves little room: reads, associates and projects, and goes no further.
     ///
     /// # Errors
     /// [`JobError`].
     pub fn association(&self) -> Result<Summary, JobError> {
         let linear = self.read_mesh()?;
-        let boundary = Boundary::new(&linear);
-        let straight = self.settings.patches.straight(&linear, &boundary).map_err(|cause| self.error(cause.into()))?;
-        let classify = |cad: &Model| {
-            let choose = |candidates: &mut associate::Candidates| candidates.leave_straight(&boundary, &straight);
-            let linkage = self.read_linkage()?;
-            let offset = self.settings.max_offset;
-            Ok(associate::classify(linkage.as_ref(), &linear, &boundary, cad, offset, &choose)?)
-        };
-        let (own, cad) = self.scaled(self.read_cad(self.cad_scale.unwrap_or(1.0))?, classify)?;
-        let mut summary =
-            associate::summary(&own.source, &linear, &boundary, &cad, &own.candidates, own.inference.as_ref());
-        summary.notes = linear.notes().iter().cloned().chain(own.association.notes).collect();
+        let associate = |cad: &Model| Associated::new(&linear, cad, self.read_linkage()?.as_ref(), &self.settings);
+        let (own, cad) = self.scaled(self.read_cad(self.cad_scale.unwrap_or(1.0))?, associate)?;
+        let Classified { candidates, association, inference, source } = &own.classified;
+        let mut summary = associate::summary(source, &linear, &own.boundary, &cad, candidates, inference.as_ref());
+        summary.notes = linear.notes().iter().chain(&association.notes).cloned().collect();
+        let case = Case { settings: &self.settings, boundary: &own.boundary, association };
+        let level = projected(case, &linear, self.settings.order).map_err(|cause| self.error(cause))?;
+        summary.spots = spots(&level).iter().map(|spot| curvability::report(&level, spot)).collect();
         Ok(summary)
     }
 
     fn read_mesh(&self) -> Result<Mesh, JobError> {
         let linear = formats::read_with(&self.mesh, &self.mesh_reading)?;
-        check_mesh(&linear).map_err(|cause| self.error(cause))?;
-        Ok(linear)
+        checked(linear).map_err(|cause| self.error(cause))
     }
 
     fn read_cad(&self, scale: f64) -> Result<Model, JobError> {

@@ -33,6 +33,7 @@
 pub mod below;
 pub mod checkpoint;
 mod checkpointing;
+pub mod curvability;
 mod driver;
 mod error;
 mod input;

@@ -164,18 +164,14 @@ impl<'a> Continuation<'a> {
         Ok(below.filter(|_| lower_orders.iter().all(|lower| !lower.stopped)))
     }
 
-    /// Elevates and projects; and what there is to say of the periodic pairs.
+    /// Elevates, projects and fits; and what there is to say of the periodic pairs.
     fn projected(&self, order: Order, clock: &mut Clock) -> Result<(Level<'a>, Vec<String>), Error> {
         clock.observer.order(order);
         clock.step(Step::Elevate);
         let (mut level, notes) = Level::new(self.case, elevate(&self.linear, order)?);
 
         clock.step(Step::Project);
-        project(&mut level);
-        let mut displacement = level.wall.displacements();
-        level.periodic.carry(level.elevated.mesh.points(), &mut displacement);
-        level.wall.displace_all(&displacement);
-        fit(&mut level);
+        put_on_cad(&mut level);
         if let Some(layers) = self.case.settings.curve_layers {
             leave_straight_beyond(layers, &mut level);
         }
@@ -195,6 +191,22 @@ impl<'a> Continuation<'a> {
         let mut relay = Relay { observer: clock.observer, work };
         Ok(smooth_level(level, &self.case.settings.smoothing, resumed, &mut relay))
     }
+}
+
+/// A level of an order on the CAD, its volume still straight.
+pub(super) fn projected<'a>(case: Case<'a>, linear: &Mesh, order: Order) -> Result<Level<'a>, Error> {
+    let (mut level, _) = Level::new(case, elevate(linear, order)?);
+    put_on_cad(&mut level);
+    Ok(level)
+}
+
+/// Projects the wall, carries periodic images along, and fits the wall to the CAD.
+fn put_on_cad(level: &mut Level) {
+    project(level);
+    let mut displacement = level.wall.displacements();
+    level.periodic.carry(level.elevated.mesh.points(), &mut displacement);
+    level.wall.displace_all(&displacement);
+    fit(level);
 }
 
 /// Takes a level that is inverted through recovery; whether it came out proven, and on the CAD but for released nodes.

@@ -14,6 +14,10 @@ pub struct Settings {
     pub patches: Choice,
     /// Order of the curved mesh, 2 to 4.
     pub order: Order,
+    /// Whether the mesh's entity tags may be the CAD's numbers. Default true.
+    pub by_tags: bool,
+    /// How far a node may be from its CAD entity where geometry decides, in the mesh's unit; `None` takes what mesh and CAD allow.
+    pub tolerance: Option<f64>,
     /// How far a linear node may be from its CAD entity; fraction of the diagonal of the mesh's bounding box. Default 1e-3.
     pub max_offset: f64,
     /// Keep all linear nodes where they are.
@@ -40,6 +44,8 @@ impl Settings {
         Settings {
             patches: Choice::All,
             order,
+            by_tags: true,
+            tolerance: None,
             max_offset: 1e-3,
             freeze_linear: false,
             freeze_walls: false,

@@ -11,9 +11,18 @@ pub(crate) fn components(
     some: &[ElementId],
     tied: impl Iterator<Item = [NodeId; 2]>,
 ) -> Vec<Vec<ElementId>> {
+    let lists = some.iter().map(|&e| elements.nodes(e));
+    connected(lists, tied).into_iter().map(|own| own.into_iter().map(|place| some[place]).collect()).collect()
+}
+
+/// The connected components of lists of nodes, by the places of the lists: those that share a node, or have nodes that are `tied` to one
+/// another, are in one.
+pub(super) fn connected<'n>(
+    lists: impl Iterator<Item = &'n [NodeId]> + Clone,
+    tied: impl Iterator<Item = [NodeId; 2]>,
+) -> Vec<Vec<usize>> {
     let mut joined = Joined { parents: FxHashMap::default() };
-    for &e in some {
-        let nodes = elements.nodes(e);
+    for nodes in lists.clone() {
         nodes[1..].iter().for_each(|&node| joined.join(nodes[0], node));
     }
     for [a, b] in tied {
@@ -22,14 +31,14 @@ pub(crate) fn components(
         }
     }
     let mut numbers: FxHashMap<NodeId, usize> = FxHashMap::default();
-    let mut components: Vec<Vec<ElementId>> = Vec::new();
-    for &e in some {
+    let mut components: Vec<Vec<usize>> = Vec::new();
+    for (place, nodes) in lists.enumerate() {
         let next = numbers.len();
-        let number = *numbers.entry(joined.root(elements.nodes(e)[0])).or_insert(next);
+        let number = *numbers.entry(joined.root(nodes[0])).or_insert(next);
         if number == components.len() {
             components.push(Vec::new());
         }
-        components[number].push(e);
+        components[number].push(place);
     }
     components
 }

@@ -4,6 +4,9 @@ use std::fmt;
 
 use super::NodeId;
 
+/// Tag of no entity of a file.
+const UNMARKED: i32 = i32::MIN;
+
 /// A geometric entity of a mesh file: dimension and tag.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct EntityKey {
@@ -20,6 +23,18 @@ impl EntityKey {
         EntityKey { dimension, tag }
     }
 
+    /// What sides of the skin lie on that the file gives no boundary element.
+    #[must_use]
+    pub fn unmarked(dimension: u8) -> EntityKey {
+        EntityKey { dimension, tag: UNMARKED }
+    }
+
+    /// Whether it is that of sides that the file gives no boundary element.
+    #[must_use]
+    pub fn is_unmarked(self) -> bool {
+        self.tag == UNMARKED
+    }
+
     /// Whether it is a surface.
     #[must_use]
     pub fn is_surface(self) -> bool {
@@ -29,6 +44,9 @@ impl EntityKey {
 
 impl fmt::Display for EntityKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.is_unmarked() {
+            return f.write_str("unmarked boundary");
+        }
         let noun = ["point", "curve", "surface", "volume"].get(usize::from(self.dimension)).unwrap_or(&"entity");
         write!(f, "{noun} {}", self.tag)
     }

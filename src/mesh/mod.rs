@@ -14,6 +14,7 @@ mod linear_positions;
 mod parts;
 pub mod periodic;
 mod plane;
+mod skin;
 mod zone;
 
 use std::collections::BTreeMap;
@@ -32,6 +33,7 @@ pub use incidence::Incidence;
 pub use linear_positions::{NotItsLinear, linear_positions};
 pub use parts::{Inconsistent, Parts};
 pub use plane::Plane;
+pub use skin::Skin;
 pub use zone::Zone;
 
 use crate::element::{Cell, Order};
@@ -149,6 +151,11 @@ impl Mesh {
     pub fn dimension(&self) -> usize {
         let with_elements = self.parts.blocks.iter().filter(|block| !block.tags.is_empty());
         with_elements.map(|block| block.cell.dimension()).max().unwrap_or(0)
+    }
+
+    /// The dimension of the sides of the cells, 0 to 2.
+    fn side_dimension(&self) -> u8 {
+        self.dimension().saturating_sub(1) as u8
     }
 
     /// Whether the cells fill a volume.

@@ -7,11 +7,11 @@ use rayon::prelude::*;
 
 use super::certificate::CertificateReport;
 use super::curve::{
-    Angles, CellReport, Costs, GridLinesReport, Input, LowerOrderReport, Nodes, OffCadReport, PatchReport, Projections,
+    Angles, CellReport, Costs, GridLinesReport, Input, LowerOrderReport, Nodes, OffCadReport, OpenFaceReport, PatchReport, Projections,
     Report, SCHEMA, SmoothingReport, StepReport, WallFailure, WallReport, WallVerdict,
 };
 use super::finite;
-use crate::associate::Classification;
+use crate::associate::{Classification, OpenFace};
 use crate::certify::{FaceFinding, Verdict};
 use crate::curve::layers::straight_elements;
 use crate::curve::recover::{Departure, OffCadFace};
@@ -48,6 +48,7 @@ pub fn report(job: &Job, curved: &Curved) -> Report {
         patches,
         faces_without_cad: curved.association.faces.iter().filter(|own| !has_cad(own)).count(),
         off_cad: curved.off_cad.par_iter().map(|face| off_cad(curved, face)).collect(),
+        open_faces: curved.open_faces.iter().map(|own| open_face(curved, own)).collect(),
         walls: walls(curved),
         grid_line_angles,
         certificate: CertificateReport::new(mesh, &curved.certificate),
@@ -158,8 +159,6 @@ fn distance(curved: &Curved, face: usize) -> Option<f64> {
 
 fn off_cad(curved: &Curved, off: &OffCadFace) -> OffCadReport {
     let face = &curved.boundary.faces[off.face];
-    let corners = &curved.boundary.corners[off.face];
-    let middle: DVec3 = corners.iter().map(|n| curved.mesh.points()[n.index()]).sum::<DVec3>() / corners.len() as f64;
     OffCadReport {
         element: curved.boundary.tag(off.face, &curved.mesh),
         entity: face.entity.to_string(),
@@ -167,8 +166,27 @@ fn off_cad(curved: &Curved, off: &OffCadFace) -> OffCadReport {
         order: off.order().map(Order::get),
         fraction: off.fraction(),
         cad_distance: distance(curved, off.face),
-        position: middle.to_array(),
+        position: middle(curved, off.face),
     }
+}
+
+fn open_face(curved: &Curved, open: &OpenFace) -> OpenFaceReport {
+    let (entity, tags) = (curved.boundary.faces[open.face].entity, curved.mesh.node_tags());
+    OpenFaceReport {
+        element: (!entity.is_unmarked()).then(|| curved.boundary.tag(open.face, &curved.mesh)),
+        entity: entity.to_string(),
+        nodes: curved.boundary.corners[open.face].iter().map(|n| tags[n.index()]).collect(),
+        position: middle(curved, open.face),
+        cause: open.doubt.to_string(),
+        cad_distance: open.doubt.distance(),
+        remedy: open.doubt.remedy(),
+    }
+}
+
+/// The mean of a boundary face's corners.
+fn middle(curved: &Curved, face: usize) -> [f64; 3] {
+    let corners = &curved.boundary.corners[face];
+    (curved.mesh.points_of(corners).sum::<DVec3>() / corners.len() as f64).to_array()
 }
 
 impl From<&LowerOrder> for LowerOrderReport {

@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::certificate::CertificateReport;
 use crate::certify::{Certificate, Tally};
 use crate::element::Cell;
-use crate::mesh::{Mesh, Plane};
+use crate::mesh::{Mesh, Plane, Skin};
 
 /// Name and version of the JSON document.
 pub const SCHEMA: &str = "sagitta-check-2";
@@ -66,7 +66,7 @@ impl CheckReport {
             certified: certificate.holds(),
             cells: certificate.tallies().map(counts).collect(),
             certificate: CertificateReport::new(mesh, certificate),
-            notes: certificate.normal.into_iter().filter_map(orientation).collect(),
+            notes: certificate.normal.into_iter().filter_map(orientation).chain(Skin::of(mesh).notes(mesh)).collect(),
         }
     }
 }

@@ -32,6 +32,8 @@ pub struct Report {
     pub faces_without_cad: usize,
     /// Boundary faces that are associated with the CAD and yet not on it, so that the elements behind them are valid.
     pub off_cad: Vec<OffCadReport>,
+    /// Boundary faces that belong to the CAD and stay straight, as it could not be decided on which of its faces they lie.
+    pub open_faces: Vec<OpenFaceReport>,
     /// Whether the faces on the CAD are free of folds.
     pub walls: WallReport,
     /// Angles at which grid lines off the walls bend from layer to layer.
@@ -132,6 +134,25 @@ pub struct OffCadReport {
     pub cad_distance: Option<f64>,
     /// Its middle.
     pub position: [f64; 3],
+}
+
+/// A boundary face that belongs to the CAD and stays straight.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct OpenFaceReport {
+    /// Its number in the file; nothing where the file has no boundary element there.
+    pub element: Option<u64>,
+    /// The mesh entity that it belongs to.
+    pub entity: String,
+    /// The numbers of its corners.
+    pub nodes: Vec<u64>,
+    /// Its middle.
+    pub position: [f64; 3],
+    /// Why it is associated with no CAD face.
+    pub cause: String,
+    /// Its largest distance from the CAD face that it runs beside, where that is the cause.
+    pub cad_distance: Option<f64>,
+    /// What can be done.
+    pub remedy: String,
 }
 
 /// Curved faces on the CAD: folded where the normal leans by 90 degrees or more against the linear face's, and the face is no graph

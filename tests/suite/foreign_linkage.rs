@@ -1,10 +1,11 @@
 //! Linkage as other programs and people write it: the ONERA M6 by names and groups, right and wrong; and files that are no linkage at all.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::common::{fixture, root, sagitta};
-use sagitta::associate::{Classification, Linkage, classify};
+use sagitta::associate::{Classification, Linkage, Sources, classify};
 use sagitta::mesh::Boundary;
 
 fn m6(extension: &str) -> PathBuf {
@@ -36,7 +37,7 @@ fn nodes_where_the_edges_of_a_string_meet_are_held() {
     let model = cad::Model::read(&m6("egads"), &cad::ReadOptions::default()).unwrap();
     let [linkage, mesh] = [m6("meshlink.xml"), m6("msh")];
     let linkage = Linkage::read(&linkage, &mesh).unwrap();
-    let association = classify(Some(&linkage), &linear, &boundary, &model, 1e-3, &|_| {}).unwrap().association;
+    let association = classify(&Sources::new(Some(&linkage), &BTreeSet::new()), &linear, &boundary, &model).unwrap().association;
     let mut held = 0;
     for (node, place) in linear.points().iter().enumerate() {
         let around = (0..boundary.edges.len()).filter(|&e| boundary.edges[e].iter().any(|n| n.index() == node));

@@ -6,6 +6,7 @@ use cad::{EdgeId, FaceId};
 
 use super::Doubt;
 use super::incidence::Incidence;
+use super::volume_sides::VolumeSides;
 use crate::associate::joint::normal_at;
 use crate::associate::{Candidate, Joints, Side};
 use crate::mesh::{Boundary, EntityKey, Mesh};
@@ -14,8 +15,8 @@ use crate::mesh::{Boundary, EntityKey, Mesh};
 pub(super) const ALONG: f64 = 0.5;
 /// How far the middle of a mesh face may be from its CAD face; fraction of its longest edge.
 pub(super) const BULGE: f64 = 0.5;
-/// The volume is on one side of a CAD face if at least this fraction of the faces that show it are there.
-const ONE_SIDE: f64 = 0.9;
+/// Of mesh faces on both sides of a CAD face, those that are farther off by this factor in the mean are not on it.
+const FARTHER: f64 = 4.0;
 
 /// A CAD face that a mesh face may lie on.
 #[derive(Clone, Copy, Debug)]
@@ -32,17 +33,21 @@ pub(super) fn decide(
     incidence: &Incidence,
     along: &[Vec<EdgeId>],
     sides: &[Side],
+    told: Option<&VolumeSides>,
 ) -> Vec<Result<FaceId, Doubt>> {
     let mut candidates: Vec<Vec<FaceCandidate>> =
         (0..boundary.faces.len()).map(|f| candidates(f, boundary, joints, incidence, &sides[f])).collect();
+    let beside = told.map_or_else(Vec::new, |told| strike_beside(&mut candidates, joints, sides, told));
     strike_wrong_sides(&mut candidates);
     grow(boundary, joints, along, &mut candidates);
     for (f, own) in candidates.iter_mut().enumerate().filter(|(_, own)| own.len() > 1) {
         keep_one_of_coincident(own, joints, &sides[f], incidence.slack(boundary, f));
     }
-    follow_neighbours(boundary, joints, incidence, along, &mut candidates);
+    let is_beside = |f: usize| beside.binary_search(&f).is_ok();
+    follow_neighbours(boundary, joints, incidence, along, &is_beside, &mut candidates);
     let outcome = |f: usize, left: &Vec<FaceCandidate>| match left[..] {
         [only] => Ok(only.face),
+        [] if is_beside(f) => Err(Doubt::OffCad),
         [] => {
             let held = boundary.corners[f].iter().filter(|n| !incidence.faces[n.index()].is_empty()).count();
             Err(match held {
@@ -81,25 +86,59 @@ fn candidates(
 
 /// Strikes out candidates that have the volume on the other side, by what faces without a choice show.
 fn strike_wrong_sides(candidates: &mut [Vec<FaceCandidate>]) {
-    let mut told: BTreeMap<FaceId, [usize; 2]> = BTreeMap::new();
+    let mut told = VolumeSides::default();
     for own in candidates.iter() {
         if let [FaceCandidate { face, outward: Some(outward) }] = own[..] {
-            told.entry(face).or_default()[usize::from(outward)] += 1;
+            told.tell(face, outward);
         }
     }
-    let volume_outside = |face: FaceId| {
-        let [against, with] = told.get(&face)?;
-        let share = *with as f64 / (against + with) as f64;
-        (share >= ONE_SIDE).then_some(true).or((share <= 1.0 - ONE_SIDE).then_some(false))
-    };
     let wrong = |candidate: &FaceCandidate| {
-        candidate.outward.zip(volume_outside(candidate.face)).is_some_and(|(own, whole)| own != whole)
+        candidate.outward.zip(told.outward(candidate.face)).is_some_and(|(own, whole)| own != whole)
     };
     for own in candidates.iter_mut().filter(|own| own.len() > 1) {
         if !own.iter().all(wrong) {
             own.retain(|candidate| !wrong(candidate));
         }
     }
+}
+
+/// Strikes out candidates of mesh faces that face the other way than those that are known to lie on the CAD face; where none is known, than those
+/// that are nearer. Returns the mesh faces that have none left, rising.
+fn strike_beside(
+    candidates: &mut [Vec<FaceCandidate>],
+    joints: &Joints<'_>,
+    sides: &[Side],
+    told: &VolumeSides,
+) -> Vec<usize> {
+    let mut distances: BTreeMap<FaceId, [(f64, usize); 2]> = BTreeMap::new();
+    for (own, side) in candidates.iter().zip(sides) {
+        for candidate in own.iter().filter(|candidate| told.outward(candidate.face).is_none()) {
+            let (Some(group), Some(outward)) = (joints.face(candidate.face), candidate.outward) else { continue };
+            let (sum, count) = &mut distances.entry(candidate.face).or_default()[usize::from(outward)];
+            *sum += group.distance(side.middle);
+            *count += 1;
+        }
+    }
+    let nearer = |face: FaceId| {
+        let [against, with] = distances.get(&face)?.map(|(sum, count)| sum / count.max(1) as f64);
+        let counts = distances.get(&face)?.map(|(_, count)| count);
+        if counts.contains(&0) {
+            return None;
+        }
+        (against > FARTHER * with).then_some(true).or((with > FARTHER * against).then_some(false))
+    };
+    let mut emptied = Vec::new();
+    for (f, own) in candidates.iter_mut().enumerate().filter(|(_, own)| !own.is_empty()) {
+        let wrong = |candidate: &FaceCandidate| {
+            let right = told.outward(candidate.face).or_else(|| nearer(candidate.face));
+            candidate.outward.zip(right).is_some_and(|(own, right)| own != right)
+        };
+        own.retain(|candidate| !wrong(candidate));
+        if own.is_empty() {
+            emptied.push(f);
+        }
+    }
+    emptied
 }
 
 /// Lets decided faces decide their neighbours, until nothing changes.
@@ -153,6 +192,7 @@ fn follow_neighbours(
     joints: &Joints<'_>,
     incidence: &Incidence,
     along: &[Vec<EdgeId>],
+    is_beside: &dyn Fn(usize) -> bool,
     candidates: &mut [Vec<FaceCandidate>],
 ) {
     let holds = |f: usize, id: FaceId| boundary.corners[f].iter().all(|n| incidence.faces[n.index()].contains(&id));
@@ -163,7 +203,7 @@ fn follow_neighbours(
             for (open, decided) in [(a, b), (b, a)] {
                 let ([], [own]) = (&candidates[open][..], &candidates[decided][..]) else { continue };
                 let bounds = |id: &EdgeId| joints.faces_of(*id).contains(&own.face) && !joints.is_seam(*id);
-                if holds(open, own.face) && !along[edge].iter().any(bounds) {
+                if !is_beside(open) && holds(open, own.face) && !along[edge].iter().any(bounds) {
                     found.push((open, *own));
                 }
             }

@@ -12,6 +12,11 @@ use crate::mesh::{Boundary, Mesh, NodeId};
 
 /// The middle of a mesh edge may be this far from the CAD edge that it runs along; fraction of its length (an arc of 180 degrees has 0.5).
 const BULGE: f64 = 0.5;
+/// A CAD edge may be this far from the faces that it bounds; fraction of the CAD's diagonal.
+const GAP: f64 = 1e-4;
+
+/// The CAD faces at a node, and the CAD edges with the parameters of the feet.
+type AtNode = (Vec<FaceId>, Vec<(EdgeId, f64)>);
 
 /// The CAD entities at every node of the mesh; nothing at nodes inside the volume.
 #[derive(Debug)]
@@ -36,7 +41,7 @@ impl Incidence {
         joints: &Joints<'_>,
         tolerance: &Tolerance,
     ) -> Incidence {
-        let slack = slacks(mesh, boundary, tolerance);
+        let (slack, gap) = (slacks(mesh, boundary, tolerance), GAP * model.diagonal());
         let single = |&(id, _): &(EdgeId, &[FaceId])| Group::of_edges(model, &[id]).ok().map(|group| (id, group));
         let curves: Vec<(EdgeId, Group)> = joints.edges().collect::<Vec<_>>().iter().filter_map(single).collect();
         let surfaces: Vec<(FaceId, &Group)> =
@@ -52,9 +57,14 @@ impl Incidence {
                 let foot = curves[i].1.closest(x, None).filter(|foot| foot.distance <= slack)?;
                 Some((curves[i].0, foot.parameters?[0]))
             });
-            (faces.collect(), edges.collect())
+            let (mut faces, edges): AtNode = (faces.collect(), edges.collect());
+            // The CAD's own gap between an edge and its faces may be larger than the tolerance.
+            let beside = edges.iter().flat_map(|&(edge, _)| joints.faces_of(edge)).copied();
+            faces.extend(beside.filter(|&id| joints.face(id).is_some_and(|face| face.distance(x) <= gap)));
+            faces.sort_unstable();
+            faces.dedup();
+            (faces, edges)
         };
-        type AtNode = (Vec<FaceId>, Vec<(EdgeId, f64)>);
         let (faces, edges) =
             (0..mesh.points().len()).into_par_iter().map(at).collect::<Vec<AtNode>>().into_iter().unzip();
         let vertex = |n: usize| {

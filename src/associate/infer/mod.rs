@@ -5,6 +5,8 @@
 //! 2. **Candidates.** A mesh face may lie on the CAD faces that hold all its corners, that run along it, and that its middle is near to.
 //! 3. **Sides.** Mesh faces with one candidate show on which side of each CAD face the volume is. Candidates with the volume on the other side are
 //!    struck out: at a sharp edge both sides of a thin plate hold all corners of some faces.
+//!    So are, where a wider tolerance is tried, candidates of faces that face the other way and lie farther off than others: the outer boundary of a
+//!    thin mesh runs beside the CAD too.
 //! 4. **Growth.** A mesh face that still has a choice goes with a neighbour across a mesh edge that runs along no CAD edge, and not with one across
 //!    an edge of the neighbour's CAD face. Nearness never decides.
 //! 5. **Smooth groups.** Faces whose corners no single CAD face holds, but several that go on smoothly in one another do, lie on these together.
@@ -16,13 +18,16 @@
 mod edges;
 mod faces;
 mod incidence;
+mod near;
 mod smooth_groups;
+mod volume_sides;
 
 use cad::{Aabb, FaceId, Model};
 
 use super::{Candidates, Joints, Side, sides};
 use crate::mesh::{Boundary, Mesh};
 pub use incidence::Incidence;
+use volume_sides::VolumeSides;
 
 /// Default tolerance, as a fraction of the mesh's bounding-box diagonal.
 pub const ON_CAD: f64 = 1e-5;
@@ -91,6 +96,14 @@ pub enum Doubt {
     /// Some of its corners are on the CAD, and some are not.
     #[error("some of its points are on no CAD face")]
     PartlyOffCad,
+    /// It runs beside a CAD face, farther from it than the tolerance, on which no other mesh face lies.
+    #[error("its points are up to {distance:.1e} off {face}, beyond the tolerance")]
+    Beside {
+        /// The nearest CAD face.
+        face: FaceId,
+        /// The largest distance of its corners from it.
+        distance: f64,
+    },
     /// Each corner is on the CAD, but on no common face.
     #[error(
         "its points are on the CAD, but no CAD face, and no set of faces that meet smoothly, contains them all and runs along it"
@@ -102,6 +115,30 @@ pub enum Doubt {
     /// It lies between faces on different CAD faces, but along none of their edges.
     #[error("it lies between {} and {}, but along no CAD edge that they share", .0[0], .0[1])]
     NoEdge([FaceId; 2]),
+}
+
+impl Doubt {
+    /// How far from the CAD the face is, where that is the doubt.
+    #[must_use]
+    pub fn distance(&self) -> Option<f64> {
+        if let Doubt::Beside { distance, .. } = self { Some(*distance) } else { None }
+    }
+
+    /// What a user can do.
+    #[must_use]
+    pub fn remedy(&self) -> String {
+        match self {
+            Doubt::OffCad | Doubt::PartlyOffCad => {
+                "raise --tolerance if it was made on this CAD, or leave its patch straight by --straight".into()
+            }
+            Doubt::Beside { distance, .. } => {
+                format!("--tolerance {:.1e} takes it as on the CAD face; --straight leaves its patch as it is", 2.0 * distance)
+            }
+            Doubt::NoCommonFace | Doubt::SeveralFaces(_) | Doubt::NoEdge(_) => {
+                "say where it lies in a linkage file, or leave its patch straight by --straight".into()
+            }
+        }
+    }
 }
 
 fn list(faces: &[FaceId]) -> String {
@@ -132,9 +169,10 @@ impl Inference {
 pub fn infer(mesh: &Mesh, boundary: &Boundary, model: &Model, tolerance: &Tolerance) -> Inference {
     let joints = Joints::new(model);
     let sides = sides(mesh, boundary);
-    let first = infer_within(mesh, boundary, model, &joints, &sides, tolerance);
+    let first = infer_within(mesh, boundary, model, &joints, &sides, tolerance, None);
     let Some(wider) = tolerance.wider().filter(|_| !first.faces.is_empty()) else { return first };
-    let mut second = infer_within(mesh, boundary, model, &joints, &sides, &wider);
+    let told = VolumeSides::of(&first.candidates.sheets, &joints, &sides);
+    let mut second = infer_within(mesh, boundary, model, &joints, &sides, &wider, Some(&told));
     let more = first.faces.len().saturating_sub(second.faces.len());
     if more == 0 {
         return first;
@@ -154,11 +192,13 @@ fn infer_within(
     joints: &Joints<'_>,
     sides: &[Side],
     tolerance: &Tolerance,
+    told: Option<&VolumeSides>,
 ) -> Inference {
     let incidence = Incidence::new(mesh, boundary, model, joints, tolerance);
     let along = incidence.along(mesh, boundary, model);
-    let decided = faces::decide(boundary, joints, &incidence, &along, sides);
-    let (classifications, doubts) = smooth_groups::join(boundary, model, joints, &incidence, sides, decided);
+    let decided = faces::decide(boundary, joints, &incidence, &along, sides, told);
+    let (classifications, mut doubts) = smooth_groups::join(boundary, model, joints, &incidence, sides, decided);
+    near::find(model, boundary, mesh, sides, &classifications, &mut doubts);
     let mut candidates =
         Candidates { trusted: true, sheets: faces::sheets(mesh, boundary, &classifications), ..Candidates::default() };
     let strings = edges::strings(boundary, model, joints, &along, &classifications);

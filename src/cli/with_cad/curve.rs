@@ -50,6 +50,12 @@ pub(in crate::cli) struct Options {
     report: Option<PathBuf>,
     #[command(flatten)]
     reading: Reading,
+    /// Ignore the mesh's entity tags
+    #[arg(long)]
+    ignore_tags: bool,
+    /// How far a node may be from its CAD entity where geometry decides [default: 1e-5 of the mesh's bounding-box diagonal, at most a tenth of the shortest edge at the node; a wider one where that leaves faces open]
+    #[arg(long, value_name = "T", value_parser = positive)]
+    tolerance: Option<f64>,
     /// How far a linear node may be from its CAD entity, as a fraction of the mesh's bounding-box diagonal
     #[arg(long, value_name = "FRACTION", default_value_t = 1e-3, value_parser = positive)]
     max_offset: f64,
@@ -152,6 +158,8 @@ impl Options {
         Settings {
             patches: self.patches(),
             order: self.order,
+            by_tags: !self.ignore_tags,
+            tolerance: self.tolerance,
             max_offset: self.max_offset,
             freeze_linear: self.freeze_linear,
             freeze_walls: self.freeze_walls,
@@ -247,7 +255,7 @@ fn dry_run(job: &Job, report: Option<&Path>) -> Result<u8, Failure> {
 
 fn write(options: &Options, output: &Path, curved: &Curved) -> Result<(), Failure> {
     let fields = if formats::shows_fields(output) { fields(curved) } else { Vec::new() };
-    formats::write(output, &curved.mesh, &options.form.with(&fields))?;
+    formats::write(output, &curved.mesh.without_unmarked(), &options.form.with(&fields))?;
     Ok(())
 }
 

@@ -12,7 +12,7 @@ use crate::cli::exit::DONE;
 use crate::cli::output::{Failure, print, write_json};
 use crate::cli::{form, input};
 use crate::formats;
-use crate::mesh::{Boundary, Mesh};
+use crate::mesh::{Boundary, Mesh, Skin};
 use crate::validate::read_linear;
 
 /// Options of `sagitta link`.
@@ -56,6 +56,8 @@ struct Nothing {
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     formats::check_folder(&options.output)?;
     let mesh = read_linear(&options.mesh, &input::reading())?;
+    let skin = Skin::of(&mesh);
+    let mesh = mesh.with_unmarked(&skin);
     let boundary = Boundary::new(&mesh);
     let reading = options.reading.options();
     let mut model = Model::read(&options.cad, &reading)?;

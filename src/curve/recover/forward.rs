@@ -70,25 +70,6 @@ impl Recovery<'_, '_> {
         let _ = self.attempt(self.floor(), |recovery| recovery.smooth_again(&settings.smoothing));
     }
 
-    /// Does what is asked, or, where the mesh is not proven valid after it or a cost is below `floor`, nothing; then the elements that fail
-    /// are returned.
-    pub(super) fn attempt(&mut self, floor: f64, attempt: impl FnOnce(&mut Self)) -> Result<(), Vec<ElementId>> {
-        let (curved, wall) = (self.level.curved.clone(), self.level.wall.clone());
-        let (smoothed, proof) = (self.smoothed.clone(), self.proof.clone());
-        attempt(self);
-        let failing = self.below(floor);
-        if failing.is_empty() && self.proof.holds() {
-            return Ok(());
-        }
-        self.level.curved = curved;
-        self.level.wall = wall;
-        self.proof = proof;
-        let tried = std::mem::replace(self.smoothed, smoothed);
-        self.smoothed.sweeps = tried.sweeps;
-        self.smoothed.stopped = tried.stopped;
-        Err(failing)
-    }
-
     /// Takes wall nodes this fraction of what is left of their way, times their pull, and carries the others along.
     fn go_forward(&mut self, fraction: f64, pull: &[f64]) {
         let carried = self.carried();

@@ -7,6 +7,7 @@ use super::backtrack::{Fallback, backtrack};
 use super::off_cad::{OffCadFace, off_cad_faces};
 use super::spot::Spot;
 use crate::curve::below::Below;
+use crate::curve::curvability::has_impossible_corners;
 use crate::curve::level::Level;
 use crate::curve::perturb::perturb;
 use crate::curve::proof::Proof;
@@ -56,6 +57,7 @@ pub fn recover<'l>(
     let order = fallback.order;
     let mut recovery = Recovery { level, smoothed, proof, below, fallback, watch };
     recovery.again();
+    recovery.round_trip();
     recovery.release();
     recovery.back();
     let untouched = recovery.proof.holds() && recovery.level.wall.is_all_the_way();
@@ -99,6 +101,22 @@ impl Recovery<'_, '_> {
     fn again(&mut self) {
         if !self.proof.certificate.holds() && !self.smoothed.stopped {
             self.smooth_again(&self.closer());
+        }
+    }
+
+    /// Takes back and forward again what fails, where no corner of the wall is impossible; where that does not end on the CAD, nothing is changed.
+    fn round_trip(&mut self) {
+        let poor = self.below(self.level.case.settings.floor);
+        if self.proof.holds() || !self.is_local(poor.len()) || has_impossible_corners(self.level) {
+            return;
+        }
+        let kept = self.kept();
+        self.back();
+        self.forward();
+        let floor = self.level.case.settings.floor;
+        let is_on_cad = self.proof.holds() && self.level.wall.is_all_the_way();
+        if !is_on_cad || self.smoothed.end.worst() < floor {
+            self.restore(kept);
         }
     }
 

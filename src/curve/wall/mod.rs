@@ -1,6 +1,7 @@
 //! The boundary's nodes: put on the CAD, fitted to it, and kept on it.
 
 mod constraint;
+pub(super) mod corner;
 pub mod fit;
 mod project;
 mod tight;

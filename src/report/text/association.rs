@@ -26,6 +26,34 @@ impl Display for Summary {
         if more > 0 {
             write!(f, "\nundecided: {more} more (--report lists them)")?;
         }
+        self.spots(f)?;
         self.notes.iter().try_for_each(|note| write!(f, "\nnote: {note}"))
+    }
+}
+
+impl Summary {
+    fn spots(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.spots.is_empty() {
+            return Ok(());
+        }
+        let impossible = self.spots.iter().filter(|spot| spot.impossible).count();
+        let count = self.spots.len();
+        write!(f, "\nlittle room: {count} places, {impossible} impossible unless wall nodes slide or leave the CAD")?;
+        for spot in self.spots.iter().take(LISTED) {
+            let (kind, element, at, cad) = (spot.kind, &spot.element, position(spot.position), &spot.cad);
+            let node = spot.node.map_or_else(String::new, |node| format!(" at node {node}"));
+            write!(f, "\n  {kind}: {element}{node} near {at}, on {cad}: ")?;
+            match (spot.q, spot.bend, spot.squeeze) {
+                (Some(q), Some(bend), _) => write!(f, "q {q:.3}, h/R {bend:.2}")?,
+                (.., Some(squeeze)) => write!(f, "s {squeeze:.2}")?,
+                _ => {}
+            }
+            write!(f, "; {}", spot.remedy)?;
+        }
+        let more = count.saturating_sub(LISTED);
+        if more > 0 {
+            write!(f, "\n  {more} more (--report lists them)")?;
+        }
+        Ok(())
     }
 }

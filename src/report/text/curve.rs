@@ -1,5 +1,7 @@
 //! A curved mesh in words: tables of its cells and patches, what was not done, and what is proven.
 
+use std::cmp::Ordering;
+use std::collections::BTreeSet;
 use std::fmt::{self, Display};
 
 use super::{LISTED, certificate, number, patch, position};
@@ -21,6 +23,7 @@ impl Display for Report {
         }
         self.grid_line_angles(f)?;
         self.off_cad(f)?;
+        self.open_faces(f)?;
         self.walls(f)?;
         certificate(&self.certificate, self.certified, f)
     }
@@ -107,6 +110,25 @@ impl Report {
             writeln!(f, "  face {element} of {entity}: {far}{way}, near {at}")?;
         }
         Ok(())
+    }
+
+    fn open_faces(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.open_faces.is_empty() {
+            return Ok(());
+        }
+        writeln!(f, "open: {} boundary faces belong to the CAD and stay straight", self.open_faces.len())?;
+        for face in self.open_faces.iter().take(LISTED) {
+            let (entity, nodes, at, cause) = (&face.entity, &face.nodes, position(face.position), &face.cause);
+            writeln!(f, "  face of {entity} with nodes {nodes:?} near {at}: {cause}")?;
+        }
+        let more = self.open_faces.len().saturating_sub(LISTED);
+        if more > 0 {
+            writeln!(f, "  {more} more (--report lists them)")?;
+        }
+        let farthest = self.open_faces.iter().max_by(|a, b| a.cad_distance.partial_cmp(&b.cad_distance).unwrap_or(Ordering::Equal));
+        let others = self.open_faces.iter().filter(|face| face.cad_distance.is_none());
+        let remedies: BTreeSet<&String> = farthest.into_iter().chain(others).map(|face| &face.remedy).collect();
+        remedies.into_iter().try_for_each(|remedy| writeln!(f, "  remedy: {remedy}"))
     }
 
     fn walls(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -1,0 +1,58 @@
+//! Faces that are off the CAD by more than the tolerance and run beside it all the same: walls of meshes in low precision, or made on a coarser CAD.
+
+use std::collections::BTreeSet;
+
+use cad::{EntityId, Evaluation, FaceId, Group, Model};
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::Doubt;
+use super::faces::ALONG;
+use crate::associate::Side;
+use crate::mesh::{Boundary, Mesh};
+
+/// Corners of a face beside the CAD are nearer to it than this fraction of the face's longest edge.
+const NEAR: f64 = 0.1;
+
+/// Tells of faces that are off the CAD which of them run beside a CAD face that no mesh face lies on; and of those that are off it in part, which
+/// run beside any.
+///
+/// Beside a CAD face with mesh faces of its own runs the outer boundary of a thin mesh, which is no part of the CAD.
+pub(super) fn find(
+    model: &Model,
+    boundary: &Boundary,
+    mesh: &Mesh,
+    sides: &[Side],
+    classifications: &[Option<Vec<FaceId>>],
+    doubts: &mut [(usize, Doubt)],
+) {
+    let covered: BTreeSet<FaceId> = classifications.iter().flatten().flatten().copied().collect();
+    let (covered, bare): (Vec<FaceId>, Vec<FaceId>) =
+        model.faces().iter().map(|face| face.id).partition(|id| covered.contains(id));
+    let [bare, covered] = [bare, covered].map(|faces| Group::of_faces(model, &faces).ok());
+    let beside = |face: usize, (group, others): (&Option<Group>, &Option<Group>)| {
+        let (side, group) = (&sides[face], group.as_ref()?);
+        let (id, off) = over(group, side.middle, side.normal)?;
+        let is_nearest = others.as_ref().is_none_or(|other| other.distance(side.middle) > off);
+        let corners = mesh.points_of(&boundary.corners[face]).map(|x| group.distance(x));
+        let distance = corners.fold(0.0, f64::max);
+        (distance <= NEAR * side.size && is_nearest).then_some(Doubt::Beside { face: id, distance })
+    };
+    doubts.par_iter_mut().for_each(|(face, doubt)| {
+        let found = match doubt {
+            Doubt::OffCad => beside(*face, (&bare, &covered)),
+            Doubt::PartlyOffCad => beside(*face, (&bare, &covered)).or_else(|| beside(*face, (&covered, &bare))),
+            _ => None,
+        };
+        *doubt = found.unwrap_or_else(|| doubt.clone());
+    });
+}
+
+/// The face of a group that a point stands over, off it along its normal, and how far; where the surface runs along the mesh face.
+fn over(group: &Group, x: DVec3, along: DVec3) -> Option<(FaceId, f64)> {
+    let foot = group.closest(x, None)?;
+    let (EntityId::Face(id), Evaluation::Surface(at)) = (foot.entity, group.evaluate_at(&foot)?) else { return None };
+    let (normal, off) = (at.normal?, x - foot.point);
+    let is_over = off.dot(normal).abs() >= ALONG * off.length();
+    (is_over && normal.dot(along).abs() >= ALONG).then_some((id, foot.distance))
+}
