@@ -2,12 +2,12 @@
 //! mesh (`docs/theory.md`, section 11).
 //!
 //! 1. Smooth again, with surveys twice as dense, where elements fail.
-//! 2. Where no corner of the wall is impossible ([`super::curvability`]): steps 4 and 6, if they end on the CAD.
-//! 3. Release the wall nodes that make elements impossible: one edge's first, more only where that is not enough (`release.rs`).
-//! 4. Take the displacement back around the failing elements, at first by half, more from round to round, with a fraction that falls
+//! 2. Release the wall nodes that make elements impossible: one edge's first, more only where that is not enough (`release.rs`). Where some
+//!    end off the CAD though no corner of the wall is impossible ([`super::curvability`]), steps 3 and 5 instead, if they end on it.
+//! 3. Take the displacement back around the failing elements, at first by half, more from round to round, with a fraction that falls
 //!    smoothly with the distance, and smooth again; wall nodes that are off the CAD stay where they were put.
-//! 5. [`backtrack`], element by element, which ends in a valid mesh whatever came before.
-//! 6. Forward again what went back, step by step, as far as the mesh stays proven (`forward.rs`).
+//! 4. [`backtrack`], element by element, which ends in a valid mesh whatever came before.
+//! 5. Forward again what went back, step by step, as far as the mesh stays proven (`forward.rs`).
 //!
 //! Back means to the curved mesh of the order below, where that is proven valid: on it the wall follows the CAD as well as that order
 //! can, and all nodes go back together. Otherwise it means the straight mesh: the wall goes back, and the volume is carried along as

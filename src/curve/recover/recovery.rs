@@ -57,8 +57,7 @@ pub fn recover<'l>(
     let order = fallback.order;
     let mut recovery = Recovery { level, smoothed, proof, below, fallback, watch };
     recovery.again();
-    recovery.round_trip();
-    recovery.release();
+    recovery.release_or_round_trip();
     recovery.back();
     let untouched = recovery.proof.holds() && recovery.level.wall.is_all_the_way();
     recovery.backtrack();
@@ -104,19 +103,19 @@ impl Recovery<'_, '_> {
         }
     }
 
-    /// Takes back and forward again what fails, where no corner of the wall is impossible; where that does not end on the CAD, nothing is changed.
-    fn round_trip(&mut self) {
-        let poor = self.below(self.level.case.settings.floor);
-        if self.proof.holds() || !self.is_local(poor.len()) || has_impossible_corners(self.level) {
-            return;
-        }
-        let kept = self.kept();
+    /// Releases wall nodes; where some end off the CAD though no corner of the wall is impossible, the way back and forward again is tried
+    /// instead.
+    fn release_or_round_trip(&mut self) {
+        let kept = (!self.proof.holds() && !has_impossible_corners(self.level)).then(|| self.kept());
+        self.release();
+        let Some(kept) = kept.filter(|_| self.proof.holds() && self.level.wall.released().next().is_some()) else { return };
+        let released = self.kept();
+        self.restore(kept);
         self.back();
         self.forward();
-        let floor = self.level.case.settings.floor;
         let is_on_cad = self.proof.holds() && self.level.wall.is_all_the_way();
-        if !is_on_cad || self.smoothed.end.worst() < floor {
-            self.restore(kept);
+        if !is_on_cad || self.smoothed.end.worst() < self.level.case.settings.floor {
+            self.restore(released);
         }
     }
 

@@ -36,7 +36,8 @@ impl Recovery<'_, '_> {
     /// Releases wall nodes at the elements that fail or are below the floor; where that does not end in a proof, nothing is changed.
     pub(super) fn release(&mut self) {
         let poor = self.below(self.level.case.settings.floor).len();
-        if poor == 0 || !self.is_local(poor) || self.smoothed.stopped {
+        let local = MOST.max((MOST_OF_ALL * self.smoothed.costs.len() as f64) as usize);
+        if poor == 0 || poor > local || self.smoothed.stopped {
             return;
         }
         let had = if self.proof.holds() { self.smoothed.end.worst() } else { 0.0 };
@@ -45,11 +46,6 @@ impl Recovery<'_, '_> {
             recovery.draw();
             recovery.reattach();
         });
-    }
-
-    /// Whether so many elements that fail are a local trouble.
-    pub(super) fn is_local(&self, poor: usize) -> bool {
-        poor <= MOST.max((MOST_OF_ALL * self.smoothed.costs.len() as f64) as usize)
     }
 
     fn release_step_by_step(&mut self) {

@@ -70,6 +70,8 @@ pub(in crate::curve) fn face_corners(
     for (face, own) in case.boundary.faces.iter().enumerate() {
         let Some(group) = case.association.group_of(case.association.faces[face]) else { continue };
         let nodes = case.boundary.nodes(face, mesh);
+        let corners_of = &nodes[..own.cell.corner_count()];
+        let middle = corners_of.iter().map(|&node| at(node)).sum::<DVec3>() / corners_of.len() as f64;
         for corner in 0..own.cell.corner_count() {
             let mut held = arms.at(own.cell, corner).filter(|arm| is_held(nodes[arm[2]]));
             let (Some(one), Some(other)) = (held.next(), held.next()) else { continue };
@@ -80,8 +82,9 @@ pub(in crate::curve) fn face_corners(
             if q(linear) > CLEAR {
                 continue;
             }
-            let cad = normal_at(group, at(nodes[corner])).map(|normal| normal * normal.dot(linear).signum());
-            let q = q(cad.unwrap_or(linear));
+            // At a sharp bend the CAD's normal at the corner may lean by more than 90 degrees off the face: its sign is told in the middle.
+            let sign = normal_at(group, middle).map_or(1.0, |normal| normal.dot(linear).signum());
+            let q = q(normal_at(group, at(nodes[corner])).map_or(linear, |normal| normal * sign));
             if q < bound {
                 corners.push(FaceCorner { face, q, arms: [one, other] });
             }
