@@ -1,7 +1,8 @@
 //! Rational Bezier spans: evaluation, restriction to a sub-range, control hulls.
 //!
 //! Control points are homogeneous, `(w x, w y, w z, w)`, weights positive (OCCT refuses others), so a span lies in the convex
-//! hull of its projected control points (Farin, *Curves and Surfaces for CAGD*).
+//! hull of its projected control points (Farin, *Curves and Surfaces for CAGD*). Parameters may reach beyond the outer knots, as trims do:
+//! the polynomials of the outer spans go on there, in OCCT as here.
 
 use glam::{DVec3, DVec4};
 
@@ -102,24 +103,47 @@ pub(crate) fn patch_d2(patch: &[DVec4], degree: [usize; 2], a: f64, b: f64) -> [
     }
 }
 
-/// The part of a span over `[a, b]` (in its 0..=1), in place. `stride` apart, `degree + 1` points from `start`.
+/// The part of a span over `[a, b]` in its own parameter, in place: `degree + 1` points from `start`, `stride` apart. Beyond 0..=1 the polynomial
+/// goes on, as it does in OCCT; weights may come to zero or below there.
 pub(crate) fn restrict(points: &mut [DVec4], start: usize, stride: usize, degree: usize, a: f64, b: f64) {
+    // whichever cut is taken first, the other is found in what it leaves: the longer part
+    if b >= 1.0 - a {
+        keep_left(points, start, stride, degree, b);
+        keep_right(points, start, stride, degree, a / b);
+    } else {
+        keep_right(points, start, stride, degree, a);
+        keep_left(points, start, stride, degree, (b - a) / (1.0 - a));
+    }
+}
+
+/// The part up to `t`, by de Casteljau's scheme.
+fn keep_left(points: &mut [DVec4], start: usize, stride: usize, degree: usize, t: f64) {
     let at = |i: usize| start + i * stride;
-    if b < 1.0 {
+    if t != 1.0 {
         for level in 1..=degree {
             for i in (level..=degree).rev() {
-                points[at(i)] = points[at(i - 1)].lerp(points[at(i)], b);
+                points[at(i)] = points[at(i - 1)].lerp(points[at(i)], t);
             }
         }
     }
-    let a = if b > 0.0 { a / b } else { 0.0 };
-    if a > 0.0 {
+}
+
+/// The part from `t` on.
+fn keep_right(points: &mut [DVec4], start: usize, stride: usize, degree: usize, t: f64) {
+    let at = |i: usize| start + i * stride;
+    if t != 0.0 {
         for level in 1..=degree {
             for i in 0..=degree - level {
-                points[at(i)] = points[at(i)].lerp(points[at(i + 1)], a);
+                points[at(i)] = points[at(i)].lerp(points[at(i + 1)], t);
             }
         }
     }
+}
+
+/// By how much [`restrict`] to `[a, b]` may enlarge rounding errors: 1 within 0..=1.
+pub(crate) fn amplification(degree: usize, [a, b]: [f64; 2]) -> f64 {
+    let step = 1.0 + 2.0 * (-a).max(b - 1.0).max(0.0);
+    step.powi(2 * degree as i32)
 }
 
 /// Projected point of a homogeneous one.
@@ -160,5 +184,34 @@ impl Knots {
 
     pub(crate) fn ends(&self) -> (f64, f64) {
         (self.0[0], self.0[self.0.len() - 1])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Over parts within, across and wholly beyond an end, the part's own points give the same curve.
+    #[test]
+    fn a_part_is_the_same_polynomial_also_beyond_the_ends() {
+        let point =
+            |i: i32| DVec4::new(f64::from(i), f64::from(i * i % 5), f64::from(3 - i), 1.0 + 0.1 * f64::from(i % 3));
+        let whole: Vec<DVec4> = (0..5).map(point).collect();
+        let at = |points: &[DVec4], t: f64| {
+            let basis: Bernstein = Bernstein::at(4, t);
+            points.iter().zip(basis.b[0]).map(|(p, b)| b * *p).sum::<DVec4>()
+        };
+        for (a, b) in
+            [(0.0, 1.0), (0.2, 0.7), (-0.3, 0.0), (-1.0, 1e-9), (1.0, 1.4), (-0.2, 1.3), (-2.0, -1.0), (2.0, 2.5)]
+        {
+            let mut part = whole.clone();
+            restrict(&mut part, 0, 1, 4, a, b);
+            for k in 0..=8 {
+                let t = f64::from(k) / 8.0;
+                let (here, there) = (at(&part, t), at(&whole, a + t * (b - a)));
+                let slack = 1e-15 * 10.0 * amplification(4, [a, b]);
+                assert!(here.distance(there) <= slack, "{a} to {b}, {t}: {here} and {there}");
+            }
+        }
     }
 }

@@ -3,7 +3,7 @@
 //! No conversion to NURBS takes place: elementary and swept surfaces keep their closed forms and B-splines are cut into Bezier
 //! spans, so that parameters, pcurves and trims are those of the file.
 
-use crate::geometry::bezier::{Knots, patch_d2, project, quotient, restrict};
+use crate::geometry::bezier::{Knots, amplification, patch_d2, quotient, restrict};
 use crate::geometry::curve::{Curve, Hull, axes, homogeneous, knots_within, ranges, shift_into};
 use crate::tolerance::BOUND_SAFETY;
 use glam::{DVec3, DVec4};
@@ -139,14 +139,14 @@ impl Net {
         [d[0], d[1] * su, d[2] * sv, d[3] * su * su, d[4] * su * sv, d[5] * sv * sv]
     }
 
-    fn hull(&self, rect: Rect) -> Vec<DVec3> {
+    fn hull(&self, rect: Rect) -> Option<Hull> {
         let [u, v] = rect.center();
         let shift = self.shift(u, v);
         let span = self.span(u - shift[0], v - shift[1]);
-        let mut points = self.patch(span).to_vec();
-        let local = |knots: &Knots, k: usize, t: f64| knots.local(k, t).0.clamp(0.0, 1.0);
-        let [a, b] = rect.u.map(|u| local(&self.u, span[0], u - shift[0]));
-        let [c, d] = rect.v.map(|v| local(&self.v, span[1], v - shift[1]));
+        let poles = self.patch(span);
+        let mut points = poles.to_vec();
+        let [a, b] = rect.u.map(|u| self.u.local(span[0], u - shift[0]).0);
+        let [c, d] = rect.v.map(|v| self.v.local(span[1], v - shift[1]).0);
         let stride = self.degree[1] + 1;
         for j in 0..stride {
             restrict(&mut points, j, stride, self.degree[0], a, b);
@@ -154,7 +154,8 @@ impl Net {
         for i in 0..=self.degree[0] {
             restrict(&mut points, i * stride, 1, self.degree[1], c, d);
         }
-        points.into_iter().map(project).collect()
+        let amplified = amplification(self.degree[0], [a, b]) * amplification(self.degree[1], [c, d]);
+        Hull::of_span(&points, poles, amplified)
     }
 }
 
@@ -285,7 +286,7 @@ impl Chart {
                 let points = hull.points.iter().flat_map(|&p| rect.v.map(|v| p + v * *d)).collect();
                 Hull { points, ..hull }
             }
-            Self::Net(net) => Hull::of(net.hull(rect)),
+            Self::Net(net) => net.hull(rect).unwrap_or_else(|| sampled_hull(self, rect)),
             Self::Offset { basis, distance, .. } => offset_hull(basis, *distance, rect),
             Self::Opaque { .. } => sampled_hull(self, rect),
         }

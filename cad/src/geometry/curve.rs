@@ -1,7 +1,7 @@
 //! Curves as the search sees them: plain arrays with OCCT's own parameters, and control hulls.
 
 use crate::boxes::Aabb;
-use crate::geometry::bezier::{Bernstein, Knots, project, quotient, restrict};
+use crate::geometry::bezier::{Bernstein, Knots, amplification, project, quotient, restrict};
 use crate::tolerance::BOUND_SAFETY;
 use glam::{DVec3, DVec4};
 use opencascade_sys as sys;
@@ -25,6 +25,16 @@ pub(crate) struct Hull {
 impl Hull {
     pub(crate) fn of(points: Vec<DVec3>) -> Self {
         Self { points, pad: 0.0, sound: true }
+    }
+
+    /// Of a span's `poles`, restricted to `points`, which enlarged rounding errors by `amplified`. `None` where a weight is not positive, as it may be
+    /// beyond the ends of a span: the points bound nothing then.
+    pub(crate) fn of_span(points: &[DVec4], poles: &[DVec4], amplified: f64) -> Option<Self> {
+        let least = points.iter().map(|p| p.w).fold(f64::INFINITY, f64::min);
+        let hull = Self::of(points.iter().copied().map(project).collect());
+        let large = || poles.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+        let pad = if amplified > 1.0 { 2.0 * f64::EPSILON * amplified * large() / least } else { 0.0 };
+        (least > 0.0).then_some(Self { pad, ..hull })
     }
 
     /// How far the hull is from `x` at least: seen along the line to `p`.
@@ -101,15 +111,16 @@ impl Spline {
         [d[0], d[1] * scale, d[3] * scale * scale]
     }
 
-    fn hull(&self, t0: f64, t1: f64) -> Vec<DVec3> {
+    fn hull(&self, t0: f64, t1: f64) -> Option<Hull> {
         let middle = 0.5 * (t0 + t1);
         let shift = self.shift(middle);
         let span = self.knots.span(middle - shift);
         let n = self.degree + 1;
-        let mut points = self.poles[span * n..][..n].to_vec();
-        let (a, b) = (self.knots.local(span, t0 - shift).0, self.knots.local(span, t1 - shift).0);
-        restrict(&mut points, 0, 1, self.degree, a.clamp(0.0, 1.0), b.clamp(0.0, 1.0));
-        points.into_iter().map(project).collect()
+        let poles = &self.poles[span * n..][..n];
+        let mut points = poles.to_vec();
+        let [a, b] = [t0, t1].map(|t| self.knots.local(span, t - shift).0);
+        restrict(&mut points, 0, 1, self.degree, a, b);
+        Hull::of_span(&points, poles, amplification(self.degree, [a, b]))
     }
 }
 
@@ -216,14 +227,16 @@ impl Curve {
                 let tip = *o + (cos * *x + sin * *y) / (0.5 * (t1 - t0)).cos();
                 Hull::of(vec![self.d2(t0)[0], tip, self.d2(t1)[0]])
             }
-            Self::Spline(spline) => Hull::of(spline.hull(t0, t1)),
+            Self::Spline(spline) => spline.hull(t0, t1).unwrap_or_else(|| self.sampled_hull(t0, t1)),
             Self::Offset { basis, distance, .. } => self.offset_hull(basis, *distance, t0, t1),
-            Self::Opaque { .. } => {
-                let points: Vec<DVec3> = (0..=8).map(|i| self.d2(t0 + (t1 - t0) * f64::from(i) / 8.0)[0]).collect();
-                let bend = points.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).length()).fold(0.0, f64::max);
-                Hull { points, pad: bend, sound: false }
-            }
+            Self::Opaque { .. } => self.sampled_hull(t0, t1),
         }
+    }
+
+    fn sampled_hull(&self, t0: f64, t1: f64) -> Hull {
+        let points: Vec<DVec3> = (0..=8).map(|i| self.d2(t0 + (t1 - t0) * f64::from(i) / 8.0)[0]).collect();
+        let bend = points.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).length()).fold(0.0, f64::max);
+        Hull { points, pad: bend, sound: false }
     }
 }
 
