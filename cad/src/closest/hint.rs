@@ -4,7 +4,8 @@
 //! `(|x − p|² − |x − f|²) / 2|f − p|` away from `x`. Of each part of the group that did not win, the search knows a floor of `|x − p|`, and
 //! its box tells how large `|f − p|` can be. So a hint knows how far the query point may move before the part matters: its leeway. The parts
 //! with little leeway are kept one by one, the rest under one number. A query with a hint visits the leaf of the hint and the parts whose
-//! leeway is spent; where that of the rest is spent, it searches anew.
+//! leeway is spent; where that of the rest is spent, it searches anew. So it does where its leaf has nothing as near as `f` any more: at a rim,
+//! `f` may be inside the trim by rounding and what Newton's method finds next outside, and the edge lies beside its trim by up to its tolerance.
 //!
 //! Near the surface (0.5 % of the diagonal) a moved query takes half the time of one without a hint. Far away (10 %, moved by 2 % of the
 //! distance) it takes four fifths: of 20 000 queries around a NACA wing one in four lies so near the middle between parts that it

@@ -148,6 +148,19 @@ impl<'a> Search<'a> {
             self.visit_below(0, leaf);
         }
         self.cut_deferred();
+        if self.has_lost(leaf) {
+            self.spared = Leeways::FREE;
+            self.visit_below(0, leaf);
+            self.cut_deferred();
+        }
+    }
+
+    /// Whether a leaf that held a foot has a nearer minimum outside the trim than the best foot: then the old foot may be the nearer one, and what is
+    /// farther than that still matter.
+    fn has_lost(&self, leaf: usize) -> bool {
+        let lost =
+            |best: Best| self.outside.iter().any(|o| o.member == leaf && o.distance < best.distance - self.tie());
+        self.best.is_none_or(lost)
     }
 
     fn visit_rivals(&mut self, hint: &Hint) {
