@@ -36,6 +36,7 @@ pub use {
     closest::group::{Group, GroupError},
     closest::hint::Hint,
     geometry::evaluation::{CurvePoint, Evaluation, SurfacePoint},
+    model::containment::Stray,
     model::health::{Health, TrimFault},
     model::reference::ReferenceError,
     model::{Edge, Face, Kind, Label, Model, NamedGroup, Sewing, SourceFormat, Unit, Vertex},

@@ -1,5 +1,6 @@
 //! The CAD model: entities as plain data, and the geometry behind them.
 
+pub(crate) mod containment;
 pub(crate) mod health;
 pub(crate) mod reference;
 mod sewing;

@@ -16,11 +16,11 @@ from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
 from OCP.STEPControl import STEPControl_AsIs, STEPControl_GeometricCurveSet, STEPControl_Writer
 from OCP.IGESControl import IGESControl_Writer
-from OCP.collections import Array1_double, Array1_gp_Pnt, Array1_int, Array2_gp_Pnt
+from OCP.collections import Array1_double, Array1_gp_Pnt, Array1_int, Array2_double, Array2_gp_Pnt
 from OCP.TopExp import TopExp_Explorer
-from OCP.TopAbs import TopAbs_FACE
+from OCP.TopAbs import TopAbs_FACE, TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS, TopoDS_Compound
+from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Edge, TopoDS_Face, TopoDS_Vertex, TopoDS_Wire
 from OCP.gp import gp_Ax1, gp_Ax2, gp_Ax2d, gp_Ax3, gp_Circ, gp_Dir, gp_Dir2d, gp_Pnt, gp_Pnt2d, gp_Trsf, gp_Vec
 
 folder = sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__))
@@ -137,6 +137,59 @@ def kinds():
     ]
 
 
+def beyond(surface, u, v, tolerance=1e-7):
+    """A face over ranges that may reach beyond the knots, as trims of other systems do: OCCT's polynomials go on there. Its makers refuse such
+    ranges, its builder does not. Boundary curves are the surface's own lines of constant parameter."""
+    builder, made, wire = BRep_Builder(), TopoDS_Face(), TopoDS_Wire()
+    builder.MakeFace(made, surface, tolerance)
+    builder.MakeWire(wire)
+    corners = {}
+    for a in (0, 1):
+        for b in (0, 1):
+            corners[a, b] = TopoDS_Vertex()
+            builder.MakeVertex(corners[a, b], surface.Value(u[a], v[b]), tolerance)
+    sides = [(surface.VIso(v[0]), gp_Pnt2d(0, v[0]), gp_Dir2d(1, 0), u, (0, 0), (1, 0), TopAbs_FORWARD),
+             (surface.UIso(u[1]), gp_Pnt2d(u[1], 0), gp_Dir2d(0, 1), v, (1, 0), (1, 1), TopAbs_FORWARD),
+             (surface.VIso(v[1]), gp_Pnt2d(0, v[1]), gp_Dir2d(1, 0), u, (0, 1), (1, 1), TopAbs_REVERSED),
+             (surface.UIso(u[0]), gp_Pnt2d(u[0], 0), gp_Dir2d(0, 1), v, (0, 0), (0, 1), TopAbs_REVERSED)]
+    for line, start, along, ends, first, last, side in sides:
+        edge = TopoDS_Edge()
+        builder.MakeEdge(edge, line, tolerance)
+        builder.Add(edge, corners[first].Oriented(TopAbs_FORWARD))
+        builder.Add(edge, corners[last].Oriented(TopAbs_REVERSED))
+        builder.UpdateEdge(edge, Geom2d_Line(start, along), made, tolerance)
+        builder.Range(edge, *ends)
+        builder.Add(wire, edge.Oriented(side))
+    builder.Add(made, wire)
+    return made
+
+
+def rims():
+    """Faces whose boundary is hard on a search: beyond the knots of surfaces and curves of each kind, and straight but unevenly parametrised."""
+    at = lambda x: lambda i, j: (x + 0.8 * i, 0.7 * j, math.sin(0.9 * i) * math.cos(0.8 * j))
+    profile = [(0, 5, 0), (1, 6.2, 0), (2, 4.3, 0.2), (3, 5.4, 0), (4, 5, 0.5), (5, 6, 0)]
+    meridian = [(1, 0, 4), (2.2, 0, 5), (0.6, 0, 6), (1.5, 0, 7), (0.7, 0, 8)]
+    weights = Array2_double(1, 4, 1, 3)
+    for i in range(4):
+        for j in range(3):
+            weights.SetValue(i + 1, j + 1, [1.0, 0.6, 1.3][(i + j) % 3])
+    rational = Geom_BezierSurface(grid(4, 3, lambda i, j: (i, 10 + j, 0.5 * math.sin(2 * i + j))), weights)
+    # along lines, but not at even steps: second derivatives run along the tangents
+    uneven = [0.0, 0.1, 0.7, 0.9, 2.3]
+    ruled = Geom_BSplineSurface(grid(5, 2, lambda i, j: (7 + 2.9 * uneven[i], 5 + 1.3 * uneven[i] + 2 * j, 0.31 * uneven[i] * (1 + j))),
+                                reals([0, 1, 2]), reals([0, 1]), integers([4, 1, 4]), integers([2, 2]), 3, 1)
+    revolved = Geom_SurfaceOfRevolution(curve(meridian), gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)))
+    return [
+        beyond(spline(7, 6, at(0)), (-0.06, 4.05), (-0.04, 3.07)),                       # 1 B-spline, beyond on all sides
+        beyond(spline(7, 6, at(6)), (1.3, 4.2), (0.5, 2.5)),                             # 2 B-spline, beyond on one
+        beyond(rational, (-0.03, 1.05), (-0.02, 1.04)),                                  # 3 rational Bezier
+        beyond(Geom_SurfaceOfLinearExtrusion(curve(profile), gp_Dir(0.1, 0.2, 1)), (-0.05, 3.04), (-1, 2)),  # 4 extrusion
+        beyond(revolved, (0.3, 2.5), (-0.03, 2.05)),                                     # 5 revolution
+        beyond(Geom_OffsetSurface(spline(7, 6, at(12)), 0.2), (-0.05, 4.04), (-0.03, 3.02), 1e-5),  # 6 offset of a B-spline
+        beyond(ruled, (0, 2), (0, 1)),                                                   # 7 straight sides, uneven parameters
+    ]
+
+
 def step(name, shape, mode=STEPControl_AsIs, assembly=0):
     writer = STEPControl_Writer()
     Interface_Static.SetIVal_s("write.step.assembly", assembly)
@@ -169,6 +222,7 @@ def pieces():
 def main():
     BRepTools.Write_s(compound(kinds()), os.path.join(folder, "kinds.brep"))
     BRepTools.Write_s(box_with_hole(), os.path.join(folder, "plate.brep"))
+    BRepTools.Write_s(compound(rims()), os.path.join(folder, "rims.brep"))
     bracket = box_with_hole()
     pair = compound([moved(bracket, 0, 0), moved(bracket, 6, 0.5)])
     step("assembly.step", compound([pair, moved(pair, 20, 1.0)]), assembly=1)

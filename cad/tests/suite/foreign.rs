@@ -1,18 +1,19 @@
-//! CAD of others: `SAGITTA_CAD` names a folder with `iea15/IEA_15MW_CFD.stp` and `.igs`, the blade of the IEA 15 MW turbine (Apache-2.0,
+//! CAD of others: `SAGITTA_CAD` names folders (separated as in `PATH`), one of them with `iea15/IEA_15MW_CFD.stp` and `.igs`, the blade of the IEA 15 MW turbine (Apache-2.0,
 //! <https://github.com/IEAWindTask37/IEA-15-240-RWT>). Its STEP file says millimetres and is 117 long; its IGES file says metres.
 
-use crate::common::{Random, options};
+use crate::common::{Random, foreign_folders, options};
 use cad::{Foot, Group, Model, ReadOptions, unit_factor};
 use glam::DVec3;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 fn blade() -> Option<[PathBuf; 2]> {
-    let folder = std::env::var_os("SAGITTA_CAD");
-    if folder.is_none() {
-        let _ = writeln!(std::io::stderr(), "!!! SAGITTA_CAD is not set: the blade is NOT tried");
+    let blades = foreign_folders().into_iter().map(|folder| folder.join("iea15/IEA_15MW_CFD"));
+    let blade = blades.map(|blade| ["stp", "igs"].map(|e| blade.with_extension(e))).find(|[step, _]| step.exists());
+    if blade.is_none() {
+        let _ = writeln!(std::io::stderr(), "!!! SAGITTA_CAD names no folder with it: the blade is NOT tried");
     }
-    folder.map(|folder| ["stp", "igs"].map(|e| Path::new(&folder).join(format!("iea15/IEA_15MW_CFD.{e}"))))
+    blade
 }
 
 fn all_faces(model: &Model) -> Group {

@@ -1,9 +1,11 @@
 //! The oracle: closest points against the best of OCCT's three searches and a dense grid with Newton, on every kind of face.
 //!
-//! `cargo test -p sagitta-cad --release --test suite oracle:: -- --ignored --nocapture`; `SAGITTA_CAD=FOLDER` adds all STEP, IGES, BREP and EGADS
-//! files of a folder and its sub-folders, `SAGITTA_ORACLE_QUERIES` sets the queries a face (default 300).
+//! `cargo test -p sagitta-cad --release --test suite oracle:: -- --ignored --nocapture`; `SAGITTA_CAD=FOLDER[:FOLDER]` adds all STEP, IGES, BREP and
+//! EGADS files of folders and their sub-folders, `SAGITTA_ORACLE_QUERIES` sets the queries a face (default 300).
 
-use crate::common::{Random, options};
+mod edges;
+
+use crate::common::{Random, cad_files, foreign_folders, options};
 use cad::{End, EntityId, Evaluation, FaceId, Foot, Group, Model, SourceFormat};
 use glam::DVec3;
 use opencascade_sys as sys;
@@ -112,20 +114,6 @@ fn query(model: &Model, face: FaceId, k: usize, random: &mut Random) -> DVec3 {
     on + way * reach * model.diagonal()
 }
 
-fn files(folder: &Path, found: &mut Vec<PathBuf>) {
-    let Ok(entries) = std::fs::read_dir(folder) else { return };
-    let mut paths: Vec<PathBuf> = entries.filter_map(Result::ok).map(|entry| entry.path()).collect();
-    paths.sort();
-    for path in paths {
-        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_lowercase();
-        if path.is_dir() {
-            files(&path, found);
-        } else if ["step", "stp", "igs", "iges", "brep", "egads"].contains(&extension.as_str()) {
-            found.push(path);
-        }
-    }
-}
-
 fn ask(model: &Model, group: &Group, judges: &mut [Judge], count: usize, tally: &mut Tally) {
     let mut random = Random(97);
     let start = std::time::Instant::now();
@@ -215,10 +203,10 @@ fn file(path: &Path, count: usize, total: &mut Tally) -> usize {
 #[test]
 #[ignore = "minutes: make oracle"]
 fn never_farther_than_the_best_of_all() {
-    let mut paths: Vec<PathBuf> = ["kinds.brep", "plate.brep"].map(crate::common::shape_path).to_vec();
-    files(&crate::common::path(""), &mut paths);
-    if let Some(folder) = std::env::var_os("SAGITTA_CAD") {
-        files(Path::new(&folder), &mut paths);
+    let mut paths: Vec<PathBuf> = ["kinds.brep", "plate.brep", "rims.brep"].map(crate::common::shape_path).to_vec();
+    cad_files(&crate::common::path(""), &mut paths);
+    for folder in foreign_folders() {
+        cad_files(&folder, &mut paths);
     }
     let count = std::env::var("SAGITTA_ORACLE_QUERIES").ok().and_then(|t| t.parse().ok()).unwrap_or(300);
     let mut total = Tally::default();

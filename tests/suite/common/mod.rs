@@ -13,6 +13,7 @@ macro_rules! args {
 }
 
 pub mod documents;
+pub mod foreign;
 pub mod iges;
 pub mod impatient;
 pub mod input;

@@ -2,7 +2,7 @@
 //!
 //! The middle of a straight mesh edge on the convex side of a thin curved section lies inside the section by its sagitta,
 //! often nearer to the other side. `cargo test --release --test thin_edges -- --nocapture` prints the figures;
-//! `SAGITTA_CAD=FOLDER` adds a wind turbine's blade and the ONERA M6.
+//! `SAGITTA_CAD=FOLDER[:FOLDER]` adds a wind turbine's blade and the ONERA M6.
 
 mod linkage;
 mod section;
@@ -86,16 +86,18 @@ struct Foreign {
 
 #[test]
 fn groups_keep_chord_points_of_foreign_cad_on_their_side() {
-    let Some(folder) = std::env::var_os("SAGITTA_CAD") else {
-        return crate::common::warn("SAGITTA_CAD is not set: blade and M6 are NOT tried");
-    };
+    let folders = crate::common::foreign::foreign_folders();
     for foreign in [
         // u along the span
         Foreign { file: "iea15/IEA_15MW_CFD.stp", sides: &[2, 3], cells: [20, 4] },
         Foreign { file: "iea15/IEA_15MW_CFD.igs", sides: &[1, 2], cells: [20, 4] },
         Foreign { file: "refine/onera-m6-sharp-te.egads", sides: &[3, 4], cells: [6, 4] },
     ] {
-        let model = read(&Path::new(&folder).join(foreign.file));
+        let Some(path) = folders.iter().map(|folder| folder.join(foreign.file)).find(|path| path.exists()) else {
+            crate::common::warn(&format!("SAGITTA_CAD names no folder with {}: it is NOT tried", foreign.file));
+            continue;
+        };
+        let model = read(&path);
         let sides: Vec<FaceId> = foreign.sides.iter().map(|&tag| FaceId::new(tag - 1)).collect();
         let tallies = ORDERS.map(|p| {
             let mut sum = Tally::default();
