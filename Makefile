@@ -76,7 +76,7 @@ bench: build ## benchmarks; minutes, not a test
 	cargo bench --bench formats
 	cargo bench -p sagitta-cad --bench projection
 
-oracle: setup-build ## closest points beside OCCT's own searches and dense grids; SAGITTA_CAD=DIR adds foreign CAD; minutes
+oracle: setup-build ## closest points beside OCCT's own searches and dense grids; SAGITTA_CAD=DIR[:DIR] adds foreign CAD; minutes
 	SAGITTA_ORACLE_QUERIES=125 cargo test -p sagitta-cad --release --test suite oracle:: -- --ignored --nocapture
 
 table: build venv ## a table of the fixtures, curved and judged by other code; minutes
