@@ -113,3 +113,93 @@ fn a_mesh_may_cover_a_part_of_its_cad() {
     assert_eq!((faces, undecided + off), (6, 3), "three faces lie on the plate, three inside it");
     curved(&mesh, &fixture("plate", "step"), &folder.path().join("out.msh"));
 }
+
+/// What a linkage file leaves out geometry makes good: the mesh is as with the whole file.
+#[test]
+fn what_a_linkage_file_leaves_out_is_made_good_by_geometry() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = std::fs::read_to_string(fixture("weeble", "meshlink.xml")).unwrap();
+    let from = text.find("<MeshSheet name=").unwrap();
+    let end = "</MeshSheet>";
+    let to = from + text[from..].find(end).unwrap() + end.len();
+    let [part, out, whole] = ["part.xml", "out.vtu", "whole.vtu"].map(|name| folder.path().join(name));
+    std::fs::write(&part, format!("{}{}", &text[..from], &text[to..])).unwrap();
+    let [mesh, cad] = ["msh", "step"].map(|extension| fixture("weeble", extension));
+    let options = args!["curve", mesh, "--cad", cad, "-q", "--order", "2"];
+    let told = sagitta(options.iter().chain(&args!["--linkage", part, "-o", out])).expect(0).stdout;
+    assert!(told.contains("boundary faces that lie on the CAD; geometry says where"), "{told}");
+    let full = fixture("weeble", "meshlink.xml");
+    sagitta(options.iter().chain(&args!["--linkage", full, "-o", whole])).expect(0);
+    assert!(std::fs::read(&out).unwrap() == std::fs::read(&whole).unwrap(), "not the same mesh");
+}
+
+/// One surface for the whole boundary, with a number that a CAD face has: geometry decides, face by face, as it does without tags.
+#[test]
+fn one_surface_for_all_is_taken_apart_by_geometry() {
+    let folder = tempfile::tempdir().unwrap();
+    let cad = fixture("weeble", "step");
+    let mesh = changed("weeble", folder.path(), |parts| {
+        renumber(parts, |_| 1);
+        parts.entities.clear();
+    });
+    let [by_tags, by_geometry] = ["out.vtu", "geometry.vtu"].map(|name| folder.path().join(name));
+    let one = curved(&mesh, &cad, &by_tags);
+    let options = args!["curve", fixture("weeble", "msh"), "--cad", cad, "--order", "2", "-q", "--ignore-tags"];
+    let told = sagitta(options.iter().chain(&args!["-o", by_geometry])).expect(0).stdout;
+    assert!(told.contains("associated by geometry, with 0 faces and 0 edges undecided"), "{told}");
+    let own = formats::read(&by_geometry).unwrap();
+    let apart = one.points().iter().zip(own.points()).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+    assert!(apart < 1e-12, "{apart}");
+}
+
+/// A wall that is off its CAD by more than any default tolerance is no straight wall in silence: exit code 3, with the distance and the
+/// tolerance that takes it; which then curves it.
+#[test]
+fn a_wall_beside_its_cad_is_told_with_its_distance() {
+    let folder = tempfile::tempdir().unwrap();
+    let cad = fixture("sphere_shell", "step");
+    let mut off = 0.0;
+    let mesh = changed("sphere_shell", folder.path(), |parts| {
+        renumber(parts, |tag| tag + 100);
+        let on_sphere = |x: &DVec3| x.length() < 1.0 + 1e-9;
+        let wall: Vec<usize> = (0..parts.points.len()).filter(|&n| on_sphere(&parts.points[n])).collect();
+        off = 4e-4; // the mesh is 3.5 across, the first cell 1e-3 high
+        wall.into_iter().for_each(|n| parts.points[n] *= 1.0 + off);
+    });
+    let [out, report] = ["out.msh", "report.json"].map(|name| folder.path().join(name));
+    let options = args!["curve", mesh, "--cad", cad, "--order", "2", "-q", "-o", out, "--report", report];
+    let told = sagitta(options.iter()).expect(3).stdout;
+    let open = json(&report)["open_faces"].as_array().unwrap().clone();
+    assert!(!open.is_empty() && open.iter().all(|face| face["cause"].as_str().unwrap().contains("beyond the tolerance")));
+    let far = open.iter().map(|face| face["cad_distance"].as_f64().unwrap()).fold(0.0, f64::max);
+    assert!((far / off - 1.0).abs() < 0.01, "{far}");
+    assert!(told.contains("remedy: --tolerance 8.0e-4"), "{told}");
+    let told = sagitta(options.iter().chain(&args!["--tolerance", "8.0e-4"])).expect(0).stdout;
+    assert!(told.contains("with 0 faces and 0 edges undecided"), "{told}");
+}
+
+/// The outer boundary of a mesh so thin that it lies within the wider tolerance of the wall's CAD is not the wall.
+#[test]
+fn the_outer_boundary_of_a_thin_mesh_is_not_its_wall() {
+    let folder = tempfile::tempdir().unwrap();
+    let cad = fixture("sphere_shell", "step");
+    let height = 1e-4;
+    let mesh = changed("sphere_shell", folder.path(), |parts| {
+        renumber(parts, |tag| tag + 100);
+        // The shell from radius 1 to 2 pressed to its height, and its wall off the sphere by a quarter of the first cell.
+        let first = 1e-3 * height;
+        for x in &mut parts.points {
+            let radius = x.length();
+            let noise = if radius < 1.0 + 1e-9 { 0.25 * first } else { 0.0 };
+            *x *= (1.0 + height * (radius - 1.0) + noise) / radius;
+        }
+    });
+    let report = folder.path().join("report.json");
+    let options = args!["curve", mesh, "--cad", cad, "--order", "2", "--dry-run", "--report", report];
+    let told = sagitta(options.iter()).expect(0).stdout;
+    let report = json(&report);
+    let on_sphere = |patch: &&serde_json::Value| patch["cad_faces"].as_object().unwrap().len() == 1;
+    let patches = report["patches"].as_array().unwrap();
+    let off: Vec<_> = patches.iter().filter(|patch| patch["off_cad"] == patch["faces"]).collect();
+    assert_eq!((off.len(), patches.iter().filter(on_sphere).count()), (1, 4), "only the outer sphere is off: {told}");
+}

@@ -33,6 +33,7 @@ mod release;
 mod resume;
 mod samples;
 mod schema;
+mod skin;
 mod sliding;
 mod sphere_order;
 mod stop;

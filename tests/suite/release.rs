@@ -83,3 +83,25 @@ fn only_faces_at_the_cornered_element_leave_the_cad() {
         assert_eq!(out.exists(), code == 0, "P{order}");
     }
 }
+
+/// The dry run names the tet before anything is curved: three of its edges lie on the wall where they meet, and there is no other such place.
+#[test]
+fn the_dry_run_names_the_cornered_element() {
+    let folder = tempfile::tempdir().unwrap();
+    let [linear, report] = ["linear.msh", "report.json"].map(|name| folder.path().join(name));
+    let mesh = with_a_cornered_tet();
+    let tet = mesh.elements_of(Cell::Tet).iter().map(|own| own.tag).max().unwrap();
+    formats::write(&linear, &mesh, &WriteOptions::default()).unwrap();
+    let options = args!["curve", linear, "--cad", fixture("sphere_shell", "step"), "--order", "2", "--dry-run"];
+    let told = sagitta(options.iter().chain(&args!["--report", report])).expect(0).stdout;
+    let report = json(&report);
+    let spots = report["spots"].as_array().unwrap();
+    let named = |spot: &serde_json::Value| spot["kind"] == "element corner" && spot["element"] == format!("tet {tet}");
+    assert!(!spots.is_empty() && spots.iter().all(named), "{told}");
+    assert!(spots.iter().all(|spot| spot["q"].as_f64().unwrap() < 0.3), "{told}");
+    assert!(told.contains("little room"), "{told}");
+    // The mesh without it has room everywhere.
+    let whole = args!["curve", fixture("sphere_shell", "msh"), "--cad", fixture("sphere_shell", "step"), "--order", "4"];
+    let told = sagitta(whole.iter().chain(&args!["--dry-run"])).expect(0).stdout;
+    assert!(!told.contains("little room"), "{told}");
+}

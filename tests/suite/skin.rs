@@ -1,0 +1,120 @@
+//! Boundary elements held against the cells: what is missing, crossed, stray or double is told, and costs no wall.
+
+use std::path::{Path, PathBuf};
+
+use crate::common::{fixture, json, sagitta};
+use sagitta::element::Cell;
+use sagitta::formats::{self, WriteOptions};
+use sagitta::mesh::{Block, Mesh, Parts, Skin};
+
+/// The coarse cylinder's mesh, changed and written to `folder`.
+fn changed(folder: &Path, change: impl FnOnce(&mut Parts)) -> PathBuf {
+    let mut parts = formats::read(&mesh()).unwrap().into_parts();
+    change(&mut parts);
+    let path = folder.join("linear.msh");
+    formats::write(&path, &Mesh::new(parts).unwrap(), &WriteOptions::default()).unwrap();
+    path
+}
+
+fn mesh() -> PathBuf {
+    fixture("cylinder_bl_coarse", "msh").with_file_name("cylinder_bl.msh")
+}
+
+fn cad() -> PathBuf {
+    fixture("cylinder_bl_coarse", "step").with_file_name("cylinder_bl.step")
+}
+
+fn is_wall(parts: &Parts, block: &Block) -> bool {
+    let radius = |n: &sagitta::mesh::NodeId| parts.points[n.index()].truncate().length();
+    block.cell == Cell::Quad && block.nodes.iter().all(|n| radius(n) < 0.5 + 1e-9)
+}
+
+/// A wall without boundary elements is curved as if it had them; the file gets no more elements than it had.
+#[test]
+fn a_wall_without_boundary_elements_is_curved() {
+    let folder = tempfile::tempdir().unwrap();
+    let linear = changed(folder.path(), |parts| {
+        let wall = parts.blocks.iter().position(|block| is_wall(parts, block)).unwrap();
+        parts.blocks.remove(wall);
+    });
+    let [out, whole, report] = ["out.vtu", "whole.vtu", "report.json"].map(|name| folder.path().join(name));
+    let options = args!["--cad", cad(), "-q", "--order", "3", "--ignore-tags"];
+    let told = sagitta(args!["curve", linear].iter().chain(&options).chain(&args!["-o", out, "--report", report]));
+    let told = told.expect(0).stdout;
+    assert!(told.contains("8 faces of the skin have no boundary element"), "{told}");
+    let report = json(&report);
+    let patches = report["patches"].as_array().unwrap();
+    let unmarked = patches.iter().find(|patch| patch["entity"] == "unmarked boundary").unwrap();
+    assert_eq!((&unmarked["faces"], unmarked["cad_groups"].as_array().unwrap().len()), (&8.into(), 1), "{told}");
+    sagitta(args!["curve", mesh()].iter().chain(&options).chain(&args!["-o", whole])).expect(0);
+    let [out, whole] = [out, whole].map(|path| formats::read(&path).unwrap());
+    let missing = whole.elements_of(Cell::Quad).len() - out.elements_of(Cell::Quad).len();
+    assert_eq!(missing, 8, "nothing is added to what the file had");
+    let far = |x: &glam::DVec3| whole.points().iter().map(|y| y.distance(*x)).fold(f64::INFINITY, f64::min);
+    assert!(out.points().iter().all(|x| far(x) < 1e-9), "the same places, whatever their numbers");
+    for command in ["info", "check"] {
+        let told = sagitta(args![command, linear]).expect(0).stdout;
+        assert!(told.contains("8 faces of the skin have no boundary element"), "{command}: {told}");
+    }
+}
+
+/// Corners in an order in which edges cross are refused by number.
+#[test]
+fn crossed_boundary_elements_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut number = 0;
+    let linear = changed(folder.path(), |parts| {
+        let wall = parts.blocks.iter().position(|block| is_wall(parts, block)).unwrap();
+        parts.blocks[wall].nodes.swap(4, 5);
+        number = parts.blocks[wall].tags[1];
+    });
+    let out = folder.path().join("out.msh");
+    let told = sagitta(args!["curve", linear, "--cad", cad(), "--order", "2", "-o", out]).expect(2).stderr;
+    assert!(told.contains(&format!("their edges cross: quad {number};")), "{told}");
+    assert!(sagitta(args!["info", linear]).expect(0).stdout.contains(&format!("edges cross: {number}")));
+}
+
+/// Cells that are there twice are refused; boundary elements that are there twice, or belong to no cell, and nodes without elements are told.
+#[test]
+fn doubles_and_strays_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out.msh");
+    let doubled = changed(folder.path(), |parts| {
+        let cells = parts.blocks.iter().position(|block| block.cell == Cell::Hex).unwrap();
+        let again = parts.blocks[cells].nodes[..8].to_vec();
+        parts.blocks[cells].nodes.extend(again);
+        parts.blocks[cells].tags.push(999_999);
+    });
+    let told = sagitta(args!["curve", doubled, "--cad", cad(), "--order", "2", "-o", out]).expect(2).stderr;
+    assert!(told.contains("the same corners as another one: hex 999999"), "{told}");
+
+    let strays = changed(folder.path(), |parts| {
+        let wall = parts.blocks.iter().position(|block| is_wall(parts, block)).unwrap();
+        let cells = parts.blocks.iter().find(|block| block.cell == Cell::Hex).unwrap();
+        let across = [cells.nodes[0], cells.nodes[1], cells.nodes[6], cells.nodes[7]];
+        let again = parts.blocks[wall].nodes[..4].to_vec();
+        let own = &mut parts.blocks[wall];
+        own.nodes.extend(again.into_iter().chain(across));
+        own.tags.extend([999_998, 999_999]);
+        parts.points.push(glam::DVec3::splat(0.1));
+        parts.node_tags.push(999_999);
+        parts.node_entities.push(None);
+    });
+    let told = sagitta(args!["info", strays]).expect(0).stdout;
+    for finding in [
+        "1 boundary elements are no side of any cell: 999999",
+        "1 boundary elements have the corners of another one: 999998",
+        "1 nodes belong to no element: 999999",
+    ] {
+        assert!(told.contains(finding), "{finding}: {told}");
+    }
+}
+
+/// Sound fixtures have nothing to be told of.
+#[test]
+fn sound_meshes_have_no_findings() {
+    for case in ["weeble", "weeble_hybrid", "torus"] {
+        let mesh = formats::read(&fixture(case, "msh")).unwrap();
+        assert_eq!(Skin::of(&mesh).notes(&mesh), [""; 0], "{case}");
+    }
+}
