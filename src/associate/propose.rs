@@ -2,7 +2,7 @@
 
 use cad::{Aabb, Model};
 
-use super::witnesses::combined;
+use super::witnesses::{add_edges, combined};
 use super::{AssociateError, Candidates, Inference, Tolerance, associate, infer};
 use crate::mesh::{Boundary, Mesh};
 
@@ -31,17 +31,22 @@ pub fn propose(mesh: &Mesh, boundary: &Boundary, model: &Model, tolerance: Optio
     let tags = if by_tags { Candidates::by_tags(mesh, boundary, model) } else { Candidates::default() };
     let is_whole = tags.sheets.iter().all(|sheet| !sheet.entities.is_empty());
     let by_tags = by_tags.then(|| associate(mesh, boundary, model, &tags, MAX_OFFSET));
-    let of_tags = |candidates| Proposal { candidates, inference: None, source: "the mesh's entity tags", factor: None };
+    let tolerance = tolerance.map_or_else(|| Tolerance::of(mesh), Tolerance::fixed);
+    let of_tags = |mut candidates: Candidates, inference: Option<Inference>| {
+        // Meshes whose faces have tags may have no elements on edges and at corners.
+        let inference = inference.unwrap_or_else(|| infer(mesh, boundary, model, &tolerance));
+        add_edges(&mut candidates, &inference, boundary, |_| true);
+        Proposal { candidates, inference: None, source: "the mesh's entity tags", factor: None }
+    };
     match &by_tags {
-        Some(Ok(_)) if is_whole => return of_tags(tags),
+        Some(Ok(_)) if is_whole => return of_tags(tags, None),
         Some(Err(AssociateError::Scale { factor: own, .. })) => factor = Some(*own),
         _ => {}
     }
-    let tolerance = tolerance.map_or_else(|| Tolerance::of(mesh), Tolerance::fixed);
     let mut inference = infer(mesh, boundary, model, &tolerance);
     match combined(&tags, &mut inference, mesh, boundary, model, MAX_OFFSET) {
         Some((candidates, source)) => Proposal { candidates, inference: Some(inference), source, factor },
-        None if matches!(by_tags, Some(Ok(_))) => of_tags(tags),
+        None if matches!(by_tags, Some(Ok(_))) => of_tags(tags, Some(inference)),
         None => Proposal { candidates: Candidates::default(), inference: Some(inference), source: "geometry", factor },
     }
 }

@@ -61,30 +61,38 @@ pub(super) fn completed(
             candidates.sheets.push(Candidate { items, ..sheet.clone() });
         }
     }
-    let edges: FxHashSet<usize> = strings(&linkage.strings, boundary).collect();
-    let beside_left = |ends: &[NodeId; 2]| {
-        let edge = boundary.edge(*ends);
-        edge.is_some_and(|e| !edges.contains(&e) && boundary.edge_faces[e].iter().any(|face| left.contains(face)))
-    };
+    let beside = |edge: usize| boundary.edge_faces[edge].iter().any(|face| left.contains(face));
+    add_edges(&mut candidates, inference, boundary, beside);
+    (!left.is_empty()).then_some((candidates, left.len()))
+}
+
+/// Adds the mesh edges and points that geometry finds on CAD edges and vertices, but for those of which something is said already: at boundary edges
+/// that are `asked` for, by index.
+pub(super) fn add_edges(
+    candidates: &mut Candidates,
+    inference: &Inference,
+    boundary: &Boundary,
+    asked: impl Fn(usize) -> bool,
+) {
+    let linked = candidates.strings.iter().filter(|string| !string.entities.is_empty());
+    let said: FxHashSet<usize> =
+        linked.flat_map(|string| &string.items).filter_map(|&ends| boundary.edge(ends)).collect();
+    let is_asked = |ends: &[NodeId; 2]| boundary.edge(*ends).is_some_and(|edge| !said.contains(&edge) && asked(edge));
+    let mut ends: FxHashSet<NodeId> = FxHashSet::default();
     for string in &inference.candidates.strings {
-        let items: Vec<[NodeId; 2]> = string.items.iter().copied().filter(beside_left).collect();
+        let items: Vec<[NodeId; 2]> = string.items.iter().copied().filter(is_asked).collect();
+        ends.extend(items.iter().flatten());
         if !items.is_empty() {
             candidates.strings.push(Candidate { items, ..string.clone() });
         }
     }
-    let nodes: FxHashSet<NodeId> = left.iter().flat_map(|&face| boundary.corners[face].iter().copied()).collect();
-    let known: FxHashSet<NodeId> = linkage.points.iter().flat_map(|point| point.items.iter().copied()).collect();
+    let linked = candidates.points.iter().filter(|point| !point.entities.is_empty());
+    let known: FxHashSet<NodeId> = linked.flat_map(|point| point.items.iter().copied()).collect();
     for point in &inference.candidates.points {
         let items: Vec<NodeId> =
-            point.items.iter().copied().filter(|node| nodes.contains(node) && !known.contains(node)).collect();
+            point.items.iter().copied().filter(|node| ends.contains(node) && !known.contains(node)).collect();
         if !items.is_empty() {
             candidates.points.push(Candidate { items, ..point.clone() });
         }
     }
-    (!left.is_empty()).then_some((candidates, left.len()))
-}
-
-/// The boundary edges of strings.
-fn strings<'c>(strings: &'c [Candidate<[NodeId; 2]>], boundary: &'c Boundary) -> impl Iterator<Item = usize> + 'c {
-    strings.iter().flat_map(|string| &string.items).filter_map(|&ends| boundary.edge(ends))
 }

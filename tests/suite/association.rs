@@ -203,3 +203,21 @@ fn the_outer_boundary_of_a_thin_mesh_is_not_its_wall() {
     let off: Vec<_> = patches.iter().filter(|patch| patch["off_cad"] == patch["faces"]).collect();
     assert_eq!((off.len(), patches.iter().filter(on_sphere).count()), (1, 4), "only the outer sphere is off: {told}");
 }
+
+/// Where faces have the CAD's numbers and edges and corners have no elements, geometry says on which CAD edges and vertices these lie.
+#[test]
+fn linkage_by_tags_has_edges_and_points() {
+    let folder = tempfile::tempdir().unwrap();
+    let bare = changed("weeble", folder.path(), |parts| parts.blocks.retain(|block| block.cell.dimension() >= 2));
+    let counts = |mesh: &Path| {
+        let [out, report] = ["link.xml", "link.json"].map(|name| folder.path().join(name));
+        let options = args!["link", mesh, "--cad", fixture("weeble", "step"), "-o", out, "--report", report];
+        sagitta(options.iter()).expect(0);
+        let report = json(&report);
+        assert_eq!(report["source"], "the mesh's entity tags");
+        ["edges", "points"].map(|key| report[key].as_u64().unwrap())
+    };
+    let [edges, points] = counts(&bare);
+    assert!(edges > 0 && points > 0, "{edges} edges, {points} points");
+    assert_eq!([edges, points], counts(&fixture("weeble", "msh")));
+}

@@ -22,6 +22,7 @@ mod foreign_linkage;
 mod formats;
 mod fuzz_formats;
 mod gmf;
+mod linear_positions;
 mod link;
 mod partial;
 mod periodic;
