@@ -1,14 +1,22 @@
 //! Where the association of a mesh comes from: a linkage file, its entity tags, and its geometry, each for what those before leave open.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use cad::{Aabb, EntityId, Kind, Model};
+use rustc_hash::FxHashSet;
 
+use super::open::SMOOTH;
 use super::witnesses::{combined, completed};
 use super::{
     AssociateError, Association, Candidates, Inference, Linkage, LinkageError, Tolerance, associate, infer, linked,
+    sides,
 };
 use crate::mesh::{Boundary, EntityKey, Mesh};
+
+/// Where tags do not hold, geometry is used if at least this fraction of the faces of every smooth part that it covers is decided.
+const DECIDED: f64 = 0.9;
+/// This many faces on CAD of a shape of its own are no chance.
+const OWN_SHAPE: usize = 3;
 
 /// What is asked for an association.
 #[derive(Clone, Copy, Debug)]
@@ -108,7 +116,8 @@ impl Classifier<'_> {
 
     fn without_linkage(&self) -> Result<Classified, AssociateError> {
         let (mesh, boundary, model) = (self.mesh, self.boundary, self.model);
-        let tags = if self.sources.by_tags { Candidates::by_tags(mesh, boundary, model) } else { Candidates::default() };
+        let tags =
+            if self.sources.by_tags { Candidates::by_tags(mesh, boundary, model) } else { Candidates::default() };
         let by_tags = self.held(tags.clone(), None, "the mesh's entity tags".into());
         match &by_tags {
             Ok(_) if self.is_whole(&tags) => return by_tags,
@@ -169,28 +178,51 @@ impl Classifier<'_> {
         inference
     }
 
-    /// Whether something was decided; and of every patch nearly all or nothing, or else something that no other CAD has by chance.
+    /// Whether something was decided; and of every smooth part of a patch nearly all or nothing, or else something that no other CAD has by chance.
     fn is_usable(&self, inference: &Inference) -> bool {
-        let mut counts: BTreeMap<_, [usize; 2]> = BTreeMap::new();
-        for face in &self.boundary.faces {
-            counts.entry(face.entity).or_default()[0] += 1;
-        }
-        for (face, _) in &inference.faces {
-            counts.entry(self.boundary.faces[*face].entity).or_default()[1] += 1;
-        }
-        let decided = |[all, open]: &[usize; 2]| *all - *open;
-        let whole = |count: &[usize; 2]| decided(count) == 0 || decided(count) as f64 >= DECIDED * count[0] as f64;
-        counts.values().any(|count| decided(count) > 0)
-            && (counts.values().all(whole) || self.has_own_shape(&inference.candidates))
+        let open: FxHashSet<usize> = inference.faces.iter().map(|(face, _)| *face).collect();
+        let whole = |part: &Vec<usize>| {
+            let decided = part.iter().filter(|face| !open.contains(face)).count();
+            decided == 0 || decided as f64 >= DECIDED * part.len() as f64
+        };
+        open.len() < self.boundary.faces.len()
+            && (self.smooth_parts().iter().all(whole) || self.has_own_shape(&inference.candidates))
     }
 
-    /// Whether faces were found on CAD that a scaled or shifted copy of it does not have in common with it: of a shape that has a size.
+    /// The boundary faces, by patch and by the sharp edges of the mesh within it.
+    fn smooth_parts(&self) -> Vec<Vec<usize>> {
+        let (boundary, sides) = (self.boundary, sides(self.mesh, self.boundary));
+        let entity = |face: usize| boundary.faces[face].entity;
+        let mut neighbours = vec![Vec::new(); boundary.faces.len()];
+        for faces in &boundary.edge_faces {
+            let &[a, b] = &faces[..] else { continue };
+            if entity(a) == entity(b) && sides[a].normal.dot(sides[b].normal) >= SMOOTH {
+                neighbours[a].push(b);
+                neighbours[b].push(a);
+            }
+        }
+        let (mut seen, mut parts) = (vec![false; boundary.faces.len()], Vec::new());
+        for first in 0..boundary.faces.len() {
+            let (mut part, mut next) = (Vec::new(), vec![first]);
+            while let Some(face) = next.pop() {
+                if !std::mem::replace(&mut seen[face], true) {
+                    part.push(face);
+                    next.extend(&neighbours[face]);
+                }
+            }
+            parts.extend((!part.is_empty()).then_some(part));
+        }
+        parts
+    }
+
+    /// Whether faces were found on CAD of a shape that no scaled or shifted copy of it has in common with it.
     fn has_own_shape(&self, candidates: &Candidates) -> bool {
-        let has_size = |entity: &EntityId| {
+        let is_own = |entity: &EntityId| {
             let EntityId::Face(id) = *entity else { return false };
-            self.model.face(id).is_some_and(|face| !matches!(face.kind, Kind::Plane | Kind::Cone))
+            let kind = self.model.face(id).map(|face| face.kind);
+            kind.is_some_and(|kind| !matches!(kind, Kind::Plane | Kind::Cone | Kind::Cylinder | Kind::Extrusion))
         };
-        let own = candidates.sheets.iter().filter(|sheet| sheet.entities.iter().any(has_size));
+        let own = candidates.sheets.iter().filter(|sheet| sheet.entities.iter().any(is_own));
         own.map(|sheet| sheet.items.len()).sum::<usize>() >= OWN_SHAPE
     }
 
@@ -214,8 +246,3 @@ impl Classifier<'_> {
         }
     }
 }
-
-/// Where tags do not hold, geometry is used if at least this fraction of the faces of every patch that it covers is decided.
-const DECIDED: f64 = 0.9;
-/// This many faces on CAD of a shape with a size are no chance.
-const OWN_SHAPE: usize = 3;

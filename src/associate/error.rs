@@ -42,7 +42,7 @@ pub enum AssociateError {
     NoCurve { a: u64, b: u64, first: String, second: String },
     /// A mesh beside the CAD, not on it.
     #[error(
-        "no part of the mesh lies on the CAD: {label} runs beside it, up to {distance:.3e} off; if the mesh was made on this CAD, give \
+        "no part of the mesh is associated with the CAD: {label} runs beside it, up to {distance:.3e} off; if the mesh was made on this CAD, give \
          --tolerance {tolerance:.1e}"
     )]
     Apart { label: String, distance: f64, tolerance: f64 },

@@ -108,7 +108,13 @@ pub fn report(level: &Level, spot: &Spot) -> SpotReport {
             let on = own.nodes[own.cell.corner_count()..].iter().map(|n| level.wall.classification(n.index()));
             let on = on.filter(|on| association.group_of(*on).is_some()).map(|on| label(association, on)).next();
             let named = (format!("{} {}", own.cell, own.tag), on.unwrap_or_default());
-            ("element corner", named, place(node), (Some(q), Some(bend), None), "split the edge that its wall faces share")
+            (
+                "element corner",
+                named,
+                place(node),
+                (Some(q), Some(bend), None),
+                "split the edge that its wall faces share",
+            )
         }
         Spot::FaceCorner { face: own, node, q, bend } => {
             let remedy = "split the face from this corner, or refine where the CAD's edges join smoothly";

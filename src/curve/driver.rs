@@ -102,9 +102,14 @@ pub(super) fn drive(
     let Recovered { proof, off_cad } = if proof.holds() && smoothed.end.worst() >= settings.floor {
         Recovered { proof, off_cad: Vec::new() }
     } else {
+        clock.step(Step::Recover);
         let below = if proof.holds() { None } else { below.mesh(clock.observer) };
+        let ended = smoothed.stopped;
+        smoothed.stopped &= !clock.observer.may_recover();
         let mut watch = |progress: Progress| clock.observer.progress(&progress);
-        recover(&mut level, &mut smoothed, below.as_ref(), proof, &mut watch)
+        let recovered = recover(&mut level, &mut smoothed, below.as_ref(), proof, &mut watch);
+        smoothed.stopped |= ended;
+        recovered
     };
 
     let Level { elevated: Elevated { mut mesh, linear_nodes, .. }, curved, wall, .. } = level;

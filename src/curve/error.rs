@@ -39,7 +39,9 @@ pub enum Error {
         order: Order,
     },
     /// Boundary elements whose edges cross.
-    #[error("{count} boundary elements have the corners of a cell's side in an order in which their edges cross: {listed}; write their corners in order round")]
+    #[error(
+        "{count} boundary elements have the corners of a cell's side in an order in which their edges cross: {listed}; write their corners in order round"
+    )]
     Crossed {
         /// How many elements.
         count: usize,

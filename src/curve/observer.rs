@@ -17,10 +17,11 @@ pub enum Step {
     Perturb,
     Smooth,
     Certify,
+    Recover,
 }
 
 impl Step {
-    /// All steps, in order.
+    /// The steps that every curving takes, in order; [`Step::Recover`] follows where it is needed.
     pub const ALL: [Step; 7] =
         [Step::Read, Step::Associate, Step::Elevate, Step::Project, Step::Perturb, Step::Smooth, Step::Certify];
 
@@ -35,6 +36,7 @@ impl Step {
             Step::Perturb => "perturb",
             Step::Smooth => "smooth",
             Step::Certify => "certify",
+            Step::Recover => "recover",
         }
     }
 }
@@ -48,6 +50,10 @@ pub trait Observer {
     /// The smoother finished a sweep; false ends it.
     fn progress(&mut self, _progress: &smooth::Progress) -> bool {
         true
+    }
+    /// Whether recovery may go on after the smoothing before it was ended by this observer.
+    fn may_recover(&mut self) -> bool {
+        false
     }
     /// A state from which [`Settings::resume`](super::settings::Settings::resume) goes on.
     fn checkpoint(&mut self, _work: &Work, _checkpoint: &Checkpoint) {}

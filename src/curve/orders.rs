@@ -215,6 +215,7 @@ fn recovers(level: &mut Level, smoothed: &mut Smoothed, below: Option<&Below>, c
     if proof.holds() {
         return true;
     }
+    clock.step(Step::Recover);
     let mut watch = |progress: Progress| clock.observer.progress(&progress);
     let recovered = recover(level, smoothed, below, proof, &mut watch);
     recovered.proof.holds() && level.wall.is_all_the_way()

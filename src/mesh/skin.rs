@@ -108,12 +108,18 @@ impl Skin {
             let own = corners[region[0]];
             let at = mesh.points_of(own).sum::<DVec3>() / own.len() as f64;
             let count = region.len();
-            format!("{count} {noun} of the skin have no boundary element: near ({:.6}, {:.6}, {:.6}){beside}", at.x, at.y, at.z)
+            format!(
+                "{count} {noun} of the skin have no boundary element: near ({:.6}, {:.6}, {:.6}){beside}",
+                at.x, at.y, at.z
+            )
         };
         let mut notes: Vec<String> = regions.iter().take(LISTED).map(note).collect();
         if regions.len() > LISTED {
             let count: usize = regions[LISTED..].iter().map(Vec::len).sum();
-            notes.push(format!("{count} more {noun} of the skin have no boundary element, in {} places", regions.len() - LISTED));
+            notes.push(format!(
+                "{count} more {noun} of the skin have no boundary element, in {} places",
+                regions.len() - LISTED
+            ));
         }
         notes
     }

@@ -7,8 +7,8 @@ use rayon::prelude::*;
 
 use super::certificate::CertificateReport;
 use super::curve::{
-    Angles, CellReport, Costs, GridLinesReport, Input, LowerOrderReport, Nodes, OffCadReport, OpenFaceReport, PatchReport, Projections,
-    Report, SCHEMA, SmoothingReport, StepReport, WallFailure, WallReport, WallVerdict,
+    Angles, CellReport, Costs, GridLinesReport, Input, LowerOrderReport, Nodes, OffCadReport, OpenFaceReport,
+    PatchReport, Projections, Report, SCHEMA, SmoothingReport, StepReport, WallFailure, WallReport, WallVerdict,
 };
 use super::finite;
 use crate::associate::{Classification, OpenFace};

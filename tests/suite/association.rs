@@ -170,7 +170,9 @@ fn a_wall_beside_its_cad_is_told_with_its_distance() {
     let options = args!["curve", mesh, "--cad", cad, "--order", "2", "-q", "-o", out, "--report", report];
     let told = sagitta(options.iter()).expect(3).stdout;
     let open = json(&report)["open_faces"].as_array().unwrap().clone();
-    assert!(!open.is_empty() && open.iter().all(|face| face["cause"].as_str().unwrap().contains("beyond the tolerance")));
+    assert!(
+        !open.is_empty() && open.iter().all(|face| face["cause"].as_str().unwrap().contains("beyond the tolerance"))
+    );
     let far = open.iter().map(|face| face["cad_distance"].as_f64().unwrap()).fold(0.0, f64::max);
     assert!((far / off - 1.0).abs() < 0.01, "{far}");
     assert!(told.contains("remedy: --tolerance 8.0e-4"), "{told}");

@@ -53,7 +53,8 @@ impl Outcome {
         let linear = formats::read(&fixture(case, "msh")).unwrap();
         let boundary = Boundary::new(&linear);
         let model = Model::read(&fixture(case, "step"), &ReadOptions::default()).unwrap();
-        let association = classify(&Sources::new(None, &BTreeSet::new()), &linear, &boundary, &model).unwrap().association;
+        let association =
+            classify(&Sources::new(None, &BTreeSet::new()), &linear, &boundary, &model).unwrap().association;
         let settings = Settings::new(Order::new(order).unwrap());
         let case_of_all = Case { settings: &settings, boundary: &boundary, association: &association };
         let (mut level, _) = Level::new(case_of_all, elevate(&linear, settings.order).unwrap());
@@ -110,7 +111,8 @@ fn the_inside_of_straight_faces_follows_their_rims() {
     let (linear, order) = (formats::read(&fixture("weeble", "msh")).unwrap(), Order::new(3).unwrap());
     let boundary = Boundary::new(&linear);
     let model = Model::read(&fixture("weeble", "step"), &ReadOptions::default()).unwrap();
-    let mut association = classify(&Sources::new(None, &BTreeSet::new()), &linear, &boundary, &model).unwrap().association;
+    let mut association =
+        classify(&Sources::new(None, &BTreeSet::new()), &linear, &boundary, &model).unwrap().association;
     let third = |surface: &Surface| surface.group.entities() == [EntityId::Face(FaceId::new(2))];
     let waist = association.surfaces.iter().position(third).unwrap();
     let straight: Vec<usize> =

@@ -37,7 +37,8 @@ fn nodes_where_the_edges_of_a_string_meet_are_held() {
     let model = cad::Model::read(&m6("egads"), &cad::ReadOptions::default()).unwrap();
     let [linkage, mesh] = [m6("meshlink.xml"), m6("msh")];
     let linkage = Linkage::read(&linkage, &mesh).unwrap();
-    let association = classify(&Sources::new(Some(&linkage), &BTreeSet::new()), &linear, &boundary, &model).unwrap().association;
+    let association =
+        classify(&Sources::new(Some(&linkage), &BTreeSet::new()), &linear, &boundary, &model).unwrap().association;
     let mut held = 0;
     for (node, place) in linear.points().iter().enumerate() {
         let around = (0..boundary.edges.len()).filter(|&e| boundary.edges[e].iter().any(|n| n.index() == node));

@@ -101,7 +101,8 @@ fn the_dry_run_names_the_cornered_element() {
     assert!(spots.iter().all(|spot| spot["q"].as_f64().unwrap() < 0.3), "{told}");
     assert!(told.contains("little room"), "{told}");
     // The mesh without it has room everywhere.
-    let whole = args!["curve", fixture("sphere_shell", "msh"), "--cad", fixture("sphere_shell", "step"), "--order", "4"];
+    let whole =
+        args!["curve", fixture("sphere_shell", "msh"), "--cad", fixture("sphere_shell", "step"), "--order", "4"];
     let told = sagitta(whole.iter().chain(&args!["--dry-run"])).expect(0).stdout;
     assert!(!told.contains("little room"), "{told}");
 }

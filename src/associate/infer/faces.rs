@@ -28,6 +28,7 @@ struct FaceCandidate {
 
 /// For each mesh face its CAD face, or why it has none.
 pub(super) fn decide(
+    mesh: &Mesh,
     boundary: &Boundary,
     joints: &Joints<'_>,
     incidence: &Incidence,
@@ -37,7 +38,7 @@ pub(super) fn decide(
 ) -> Vec<Result<FaceId, Doubt>> {
     let mut candidates: Vec<Vec<FaceCandidate>> =
         (0..boundary.faces.len()).map(|f| candidates(f, boundary, joints, incidence, &sides[f])).collect();
-    let beside = told.map_or_else(Vec::new, |told| strike_beside(&mut candidates, joints, sides, told));
+    let beside = told.map_or_else(Vec::new, |told| strike_beside(&mut candidates, mesh, boundary, joints, told));
     strike_wrong_sides(&mut candidates);
     grow(boundary, joints, along, &mut candidates);
     for (f, own) in candidates.iter_mut().enumerate().filter(|(_, own)| own.len() > 1) {
@@ -106,17 +107,18 @@ fn strike_wrong_sides(candidates: &mut [Vec<FaceCandidate>]) {
 /// that are nearer. Returns the mesh faces that have none left, rising.
 fn strike_beside(
     candidates: &mut [Vec<FaceCandidate>],
+    mesh: &Mesh,
+    boundary: &Boundary,
     joints: &Joints<'_>,
-    sides: &[Side],
     told: &VolumeSides,
 ) -> Vec<usize> {
     let mut distances: BTreeMap<FaceId, [(f64, usize); 2]> = BTreeMap::new();
-    for (own, side) in candidates.iter().zip(sides) {
+    for (own, corners) in candidates.iter().zip(&boundary.corners) {
         for candidate in own.iter().filter(|candidate| told.outward(candidate.face).is_none()) {
             let (Some(group), Some(outward)) = (joints.face(candidate.face), candidate.outward) else { continue };
             let (sum, count) = &mut distances.entry(candidate.face).or_default()[usize::from(outward)];
-            *sum += group.distance(side.middle);
-            *count += 1;
+            *sum += mesh.points_of(corners).map(|x| group.distance(x)).sum::<f64>();
+            *count += corners.len();
         }
     }
     let nearer = |face: FaceId| {

@@ -114,18 +114,36 @@ impl Incidence {
 
 /// How far each boundary node may be from what holds it; `None` inside the volume.
 fn slacks(mesh: &Mesh, boundary: &Boundary, tolerance: &Tolerance) -> Vec<Option<f64>> {
+    let spacing = if tolerance.is_wide() { along_wall(mesh, boundary) } else { shortest_edges(mesh, boundary) };
+    let mut slacks = vec![None; mesh.points().len()];
+    for node in boundary.corners.iter().flatten() {
+        slacks[node.index()] = Some(tolerance.at(spacing[node.index()]));
+    }
+    slacks
+}
+
+/// The shortest mesh edge at each node.
+fn shortest_edges(mesh: &Mesh, boundary: &Boundary) -> Vec<f64> {
     let mut shortest = vec![f64::INFINITY; mesh.points().len()];
     let cells = mesh.cells();
-    let of_cells = cells.iter().filter(|_| !tolerance.is_wide()).flat_map(|cell| cell.edges());
-    for [a, b] in of_cells.chain(boundary.edges.iter().copied()) {
+    for [a, b] in cells.iter().flat_map(|cell| cell.edges()).chain(boundary.edges.iter().copied()) {
         let length = mesh.points()[a.index()].distance(mesh.points()[b.index()]);
         for end in [a, b] {
             shortest[end.index()] = shortest[end.index()].min(length);
         }
     }
-    let mut slacks = vec![None; mesh.points().len()];
-    for node in boundary.corners.iter().flatten() {
-        slacks[node.index()] = Some(tolerance.at(shortest[node.index()]));
+    shortest
+}
+
+/// The shortest edge of the boundary face at each node that has the longest one.
+fn along_wall(mesh: &Mesh, boundary: &Boundary) -> Vec<f64> {
+    let mut spacing = vec![0.0_f64; mesh.points().len()];
+    for corners in &boundary.corners {
+        let next = corners.iter().cycle().skip(1);
+        let lengths =
+            corners.iter().zip(next).map(|(a, b)| mesh.points()[a.index()].distance(mesh.points()[b.index()]));
+        let shortest = lengths.fold(f64::INFINITY, f64::min);
+        corners.iter().for_each(|n| spacing[n.index()] = spacing[n.index()].max(shortest));
     }
-    slacks
+    spacing
 }

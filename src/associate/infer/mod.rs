@@ -49,8 +49,9 @@ pub struct Tolerance {
 enum Limit {
     /// A fraction of the shortest mesh edge at the node.
     AnyEdge,
-    /// A fraction of the shortest edge of the boundary: first cells may be lower than the CAD is exact.
-    BoundaryEdge,
+    /// A fraction of the shortest edge of the boundary face at the node whose edges are longest, the spacing along the wall: first cells may be
+    /// lower than the CAD is exact.
+    AlongWall,
     /// Nothing.
     None,
 }
@@ -73,12 +74,12 @@ impl Tolerance {
 
     /// The wider one to be tried next, for meshes in single precision and CAD that is less exact than the first cells are high.
     fn wider(&self) -> Option<Tolerance> {
-        let wide = Tolerance { distance: self.distance * WIDE / ON_CAD, limit: Limit::BoundaryEdge };
+        let wide = Tolerance { distance: self.distance * WIDE / ON_CAD, limit: Limit::AlongWall };
         (self.limit == Limit::AnyEdge).then_some(wide)
     }
 
     fn is_wide(&self) -> bool {
-        self.limit == Limit::BoundaryEdge
+        self.limit == Limit::AlongWall
     }
 
     /// At a node whose shortest edge has this length.
@@ -132,7 +133,10 @@ impl Doubt {
                 "raise --tolerance if it was made on this CAD, or leave its patch straight by --straight".into()
             }
             Doubt::Beside { distance, .. } => {
-                format!("--tolerance {:.1e} takes it as on the CAD face; --straight leaves its patch as it is", 2.0 * distance)
+                format!(
+                    "--tolerance {:.1e} takes it as on the CAD face; --straight leaves its patch as it is",
+                    2.0 * distance
+                )
             }
             Doubt::NoCommonFace | Doubt::SeveralFaces(_) | Doubt::NoEdge(_) => {
                 "say where it lies in a linkage file, or leave its patch straight by --straight".into()
@@ -196,7 +200,7 @@ fn infer_within(
 ) -> Inference {
     let incidence = Incidence::new(mesh, boundary, model, joints, tolerance);
     let along = incidence.along(mesh, boundary, model);
-    let decided = faces::decide(boundary, joints, &incidence, &along, sides, told);
+    let decided = faces::decide(mesh, boundary, joints, &incidence, &along, sides, told);
     let (classifications, mut doubts) = smooth_groups::join(boundary, model, joints, &incidence, sides, decided);
     near::find(model, boundary, mesh, sides, &classifications, &mut doubts);
     let mut candidates =

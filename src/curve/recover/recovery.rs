@@ -108,7 +108,9 @@ impl Recovery<'_, '_> {
     fn release_or_round_trip(&mut self) {
         let kept = (!self.proof.holds() && !has_impossible_corners(self.level)).then(|| self.kept());
         self.release();
-        let Some(kept) = kept.filter(|_| self.proof.holds() && self.level.wall.released().next().is_some()) else { return };
+        let Some(kept) = kept.filter(|_| self.proof.holds() && self.level.wall.released().next().is_some()) else {
+            return;
+        };
         let released = self.kept();
         self.restore(kept);
         self.back();

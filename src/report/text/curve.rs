@@ -125,7 +125,10 @@ impl Report {
         if more > 0 {
             writeln!(f, "  {more} more (--report lists them)")?;
         }
-        let farthest = self.open_faces.iter().max_by(|a, b| a.cad_distance.partial_cmp(&b.cad_distance).unwrap_or(Ordering::Equal));
+        let farthest = self
+            .open_faces
+            .iter()
+            .max_by(|a, b| a.cad_distance.partial_cmp(&b.cad_distance).unwrap_or(Ordering::Equal));
         let others = self.open_faces.iter().filter(|face| face.cad_distance.is_none());
         let remedies: BTreeSet<&String> = farthest.into_iter().chain(others).map(|face| &face.remedy).collect();
         remedies.into_iter().try_for_each(|remedy| writeln!(f, "  remedy: {remedy}"))
