@@ -7,7 +7,8 @@ use clap::Args;
 use super::{form, input};
 use crate::certify::{self, NotCertifiable, Settings};
 use crate::cli::exit::{DONE, NOT_CERTIFIED};
-use crate::cli::output::{Failure, print, write_json};
+use crate::cli::files::Files;
+use crate::cli::output::{Beside, Failure, print, write_json};
 use crate::mesh::{self, linear_positions};
 use crate::report::CheckReport;
 
@@ -43,6 +44,10 @@ struct Refused {
 
 /// Certifies a mesh and prints what is proven.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
+    Files::of_mesh(&options.mesh)
+        .reads("--linear", options.linear.as_ref())
+        .writes("--report", options.report.as_ref())
+        .check()?;
     let mesh = input::mesh(&options.mesh)?;
     let unperturbed = match &options.linear {
         None => None,
@@ -59,9 +64,10 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let certificate = certify::check(&mesh, mesh.points(), unperturbed.as_deref(), &Settings::default())
         .map_err(|cause| Refused { mesh: options.mesh.display().to_string(), cause })?;
     let report = CheckReport::new(&options.mesh, &mesh, &certificate);
+    let mut beside = Beside::default();
     if let Some(path) = &options.report {
-        write_json(path, &report)?;
+        beside.tell(write_json(path, &report));
     }
-    print(&report.to_string())?;
-    Ok(if certificate.holds() { DONE } else { NOT_CERTIFIED })
+    beside.tell(print(&report.to_string()));
+    Ok(beside.exit_code(if certificate.holds() { DONE } else { NOT_CERTIFIED }))
 }

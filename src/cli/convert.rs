@@ -7,7 +7,8 @@ use clap::Args;
 use super::form::{self, Form};
 use super::input;
 use crate::cli::exit::DONE;
-use crate::cli::output::{Failure, print};
+use crate::cli::files::Files;
+use crate::cli::output::{Beside, Failure, print};
 use crate::formats;
 
 /// Options of `sagitta convert`.
@@ -23,12 +24,11 @@ pub(super) struct Options {
 
 /// Reads a mesh and writes it in another format.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
-    formats::check_output(&options.output)?;
+    Files::of_mesh(&options.mesh).writes_mesh(Some(&options.output)).check()?;
     let mesh = input::mesh(&options.mesh)?;
     formats::write(&options.output, &mesh, &options.form.with(&[]))?;
-    for note in mesh.notes() {
-        print(&format!("note: {note}"))?;
-    }
-    print(&format!("written: {}", options.output.display()))?;
-    Ok(DONE)
+    let mut beside = Beside::default();
+    let notes: String = mesh.notes().iter().map(|note| format!("note: {note}\n")).collect();
+    beside.tell(print(&format!("{notes}written: {}", options.output.display())));
+    Ok(beside.exit_code(DONE))
 }

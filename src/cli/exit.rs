@@ -12,7 +12,9 @@ pub(super) const OFF_CAD: u8 = 3;
 pub(super) const NOT_CERTIFIED: u8 = 4;
 /// Ended before it was done; certified. Faces may be off the CAD.
 pub(super) const STOPPED: u8 = 5;
-/// Interrupted twice: ended at once, nothing was written.
+/// Done as with [`DONE`], but a file beside the result, or standard output, could not be written.
+pub(super) const SIDE_FILE: u8 = 6;
+/// Interrupted before there was anything to keep, or twice: ended at once, nothing was written.
 pub(super) const INTERRUPTED: u8 = 130;
 
 /// What a code means, for the help.
@@ -24,6 +26,7 @@ pub(super) fn meaning(code: u8) -> &'static str {
         OFF_CAD => "certified, but some boundary faces are off the CAD (curve)",
         NOT_CERTIFIED => "not all is proven (project: closest points), or --require-all is not met",
         STOPPED => "stopped early: limit or interrupt; certified, faces as with 3 (curve)",
-        _ => "interrupted twice: ended at once, nothing is written",
+        SIDE_FILE => "as 0, but a report, trace, checkpoint or stdout was not written (told)",
+        _ => "interrupted while reading, or twice: ended at once, nothing is written",
     }
 }

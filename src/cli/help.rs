@@ -1,8 +1,8 @@
 //! What stands below the help of every command: examples, and its exit codes.
 
-use super::exit::{COULD_NOT_RUN, DONE, NOT_CERTIFIED, meaning};
+use super::exit::{COULD_NOT_RUN, DONE, INTERRUPTED, NOT_CERTIFIED, SIDE_FILE, meaning};
 #[cfg(feature = "cad")]
-use super::exit::{FINDINGS, INTERRUPTED, OFF_CAD, STOPPED};
+use super::exit::{FINDINGS, OFF_CAD, STOPPED};
 
 /// Of the program.
 #[cfg(feature = "cad")]
@@ -11,7 +11,7 @@ pub(super) fn program() -> String {
   sagitta curve fixtures/weeble/weeble.msh --cad fixtures/weeble/weeble.step \\
       --order 3 -o weeble_p3.msh
   sagitta check weeble_p3.msh --linear fixtures/weeble/weeble.msh";
-    let codes = [DONE, FINDINGS, COULD_NOT_RUN, OFF_CAD, NOT_CERTIFIED, STOPPED, INTERRUPTED];
+    let codes = [DONE, FINDINGS, COULD_NOT_RUN, OFF_CAD, NOT_CERTIFIED, STOPPED, SIDE_FILE];
     format!("{}\n\n`sagitta COMMAND --help` has examples of each command.", below(examples, &codes))
 }
 
@@ -21,7 +21,7 @@ pub(super) fn program() -> String {
     let examples = "
   sagitta check weeble_p3.msh --linear fixtures/weeble/weeble.msh
   sagitta convert weeble_p3.msh -o weeble_p3.cgns";
-    below(examples, &[DONE, COULD_NOT_RUN, NOT_CERTIFIED])
+    below(examples, &[DONE, COULD_NOT_RUN, NOT_CERTIFIED, SIDE_FILE])
 }
 
 #[cfg(feature = "cad")]
@@ -32,7 +32,7 @@ pub(super) fn curve() -> String {
   sagitta curve fixtures/weeble/weeble.msh --cad fixtures/weeble/weeble.step \\
       --linkage fixtures/weeble/weeble.meshlink.xml --order 2 \\
       -o weeble_p2.vtu --report weeble_p2.json";
-    below(examples, &[DONE, COULD_NOT_RUN, OFF_CAD, NOT_CERTIFIED, STOPPED, INTERRUPTED])
+    below(examples, &[DONE, COULD_NOT_RUN, OFF_CAD, NOT_CERTIFIED, STOPPED, SIDE_FILE])
 }
 
 pub(super) fn check() -> String {
@@ -40,14 +40,14 @@ pub(super) fn check() -> String {
   sagitta check fixtures/samples/hexpyrtet_p3_msh41a.msh
   sagitta check weeble_p3.msh --linear fixtures/weeble/weeble.msh \\
       --report weeble_check.json";
-    below(examples, &[DONE, COULD_NOT_RUN, NOT_CERTIFIED])
+    below(examples, &[DONE, COULD_NOT_RUN, NOT_CERTIFIED, SIDE_FILE])
 }
 
 pub(super) fn convert() -> String {
     let examples = "
   sagitta convert fixtures/weeble/weeble.msh -o weeble.cgns
   sagitta convert weeble_p3.msh --volume-only -o weeble_p3.vtu";
-    below(examples, &[DONE, COULD_NOT_RUN])
+    below(examples, &[DONE, COULD_NOT_RUN, SIDE_FILE])
 }
 
 #[cfg(feature = "cad")]
@@ -57,7 +57,7 @@ pub(super) fn link() -> String {
       -o weeble_link.xml
   sagitta link fixtures/torus/torus.msh --cad fixtures/torus/torus.step \\
       --ignore-tags -o torus_link.xml --report torus_link.json";
-    below(examples, &[DONE, COULD_NOT_RUN])
+    below(examples, &[DONE, COULD_NOT_RUN, SIDE_FILE])
 }
 
 #[cfg(feature = "cad")]
@@ -97,11 +97,12 @@ pub(super) fn project() -> String {
   sagitta project fixtures/weeble/weeble.step fixtures/samples/points.csv
   sagitta project fixtures/weeble/weeble.step fixtures/samples/points.csv \\
       --group face:2,face:3 -o feet.csv --report feet.json";
-    below(examples, &[DONE, COULD_NOT_RUN, NOT_CERTIFIED])
+    below(examples, &[DONE, COULD_NOT_RUN, NOT_CERTIFIED, SIDE_FILE])
 }
 
 /// Lines of 80 columns at most: clap breaks longer ones on a narrow terminal, where they can no longer be pasted.
 fn below(examples: &str, codes: &[u8]) -> String {
-    let codes: Vec<String> = codes.iter().map(|&code| format!("  {code:<3}  {}", meaning(code))).collect();
+    let codes = codes.iter().chain(&[INTERRUPTED]);
+    let codes: Vec<String> = codes.map(|&code| format!("  {code:<3}  {}", meaning(code))).collect();
     format!("Examples:{examples}\n\nExit codes:\n{}", codes.join("\n"))
 }

@@ -20,7 +20,7 @@ pub(super) struct Options {
     file: PathBuf,
     /// Seconds after which reading CAD is abandoned
     #[cfg(feature = "cad")]
-    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = super::with_cad::positive)]
+    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = super::with_cad::seconds)]
     cad_timeout: f64,
 }
 

@@ -7,7 +7,7 @@ use crate::mesh::Mesh;
 
 /// CGNS is parsed by this program in a process of its own, which may crash.
 pub(super) fn reading() -> ReadOptions {
-    ReadOptions { reader: std::env::current_exe().ok() }
+    ReadOptions { reader: Some(cad::child::this_program()) }
 }
 
 /// Reads a mesh.

@@ -3,18 +3,22 @@
 //! Arguments are parsed here and results printed; the work is that of the library. Results go to stdout, progress and messages to stderr.
 //!
 //! Exit codes: 0 done and certified, or clean; 1 `validate` has findings; 2 could not run; 3 certified with some faces off the CAD;
-//! 4 not certified (`project`: some closest points not proven); 5 stopped early, certified; 130 interrupted twice.
+//! 4 not certified (`project`: some closest points not proven); 5 stopped early, certified; 6 as 0, but something beside the result
+//! could not be written; 130 interrupted before there was anything to keep, or twice.
 
 mod check;
 mod convert;
 #[cfg_attr(not(feature = "cad"), allow(dead_code))] // some codes are of commands that need CAD
 mod exit;
 mod explain;
+mod files;
 mod form;
 mod help;
 mod info;
 mod input;
 mod output;
+mod signals;
+mod threads;
 #[cfg(feature = "cad")]
 mod with_cad;
 
@@ -75,28 +79,40 @@ pub fn run(arguments: Vec<OsString>) -> ExitCode {
     {
         return serve(Path::new(path));
     }
+    if let Err(error) = signals::take_over() {
+        message(format_args!("sagitta: signals cannot be taken over: {error}"));
+        return COULD_NOT_RUN.into();
+    }
     let program = match Program::try_parse_from(arguments) {
         Ok(program) => program,
         Err(error) => {
-            let code = if error.use_stderr() { COULD_NOT_RUN } else { DONE };
             // Where stderr is gone there is no one to tell.
-            let _ = error.print();
+            let told = error.print().is_ok();
+            let code = if error.use_stderr() || !told { COULD_NOT_RUN } else { DONE };
             return code.into();
         }
     };
-    let outcome = match program.command {
-        #[cfg(feature = "cad")]
-        Command::WithCad(command) => with_cad::run(&command),
-        Command::Check(options) => check::run(&options),
-        Command::Convert(options) => convert::run(&options),
-        Command::Explain(options) => explain::run(&options),
-        Command::Info(options) => info::run(&options),
-    };
-    match outcome {
+    match run_command(&program.command) {
         Ok(code) => code.into(),
         Err(error) => {
             message(format_args!("sagitta: {error}"));
             COULD_NOT_RUN.into()
         }
+    }
+}
+
+fn run_command(command: &Command) -> Result<u8, output::Failure> {
+    threads::start(match command {
+        #[cfg(feature = "cad")]
+        Command::WithCad(command) => command.threads(),
+        _ => None,
+    })?;
+    match command {
+        #[cfg(feature = "cad")]
+        Command::WithCad(command) => with_cad::run(command),
+        Command::Check(options) => check::run(options),
+        Command::Convert(options) => convert::run(options),
+        Command::Explain(options) => explain::run(options),
+        Command::Info(options) => info::run(options),
     }
 }

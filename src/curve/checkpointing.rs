@@ -45,7 +45,7 @@ impl Observer for Checkpointing<'_> {
     }
 
     fn checkpoint(&mut self, work: &Work, checkpoint: &Checkpoint) {
-        if let Some(file) = self.file.as_ref().filter(|_| checkpoint.sweeps() >= self.last + self.every) {
+        if let Some(file) = self.file.as_ref().filter(|_| checkpoint.sweeps() >= self.last.saturating_add(self.every)) {
             self.last = checkpoint.sweeps();
             self.failure = checkpoint::write(file, work, checkpoint).err();
         }

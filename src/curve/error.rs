@@ -96,12 +96,13 @@ pub enum JobError {
 
 impl JobError {
     /// An error with the names of the files that it is about.
-    pub(super) fn new(cause: Error, mesh: &Path, cad: &Path) -> JobError {
+    pub(super) fn new(cause: Error, mesh: &Path, cad: &Path, linkage: Option<&Path>) -> JobError {
         let (mesh, cad) = (mesh.display(), cad.display());
-        let about = match &cause {
-            Error::Linkage(_) | Error::Checkpoint(_) => String::new(),
-            Error::Associate(_) => format!("{mesh} and {cad}: "),
-            Error::NoFaces => format!("{cad}: "),
+        let about = match (&cause, linkage) {
+            (Error::Linkage(_) | Error::Checkpoint(_), _) => String::new(),
+            (Error::Associate(_), Some(linkage)) => format!("{} for {mesh} and {cad}: ", linkage.display()),
+            (Error::Associate(_), None) => format!("{mesh} and {cad}: "),
+            (Error::NoFaces, _) => format!("{cad}: "),
             _ => format!("{mesh}: "),
         };
         JobError::Curve { about, cause: Box::new(cause) }

@@ -114,6 +114,6 @@ impl Job {
     }
 
     fn error(&self, cause: Error) -> JobError {
-        JobError::new(cause, &self.mesh, &self.cad)
+        JobError::new(cause, &self.mesh, &self.cad, self.linkage.as_deref())
     }
 }

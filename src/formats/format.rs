@@ -7,7 +7,7 @@ use std::path::Path;
 use super::detect::{Head, Verdict};
 use super::error::Error;
 use super::options::{ReadOptions, WriteOptions};
-use super::output::{Part, Unwritten};
+use super::part::{Part, Unwritten};
 use crate::element::{Cell, Order};
 use crate::mesh::Mesh;
 

@@ -18,16 +18,18 @@ mod node_order;
 mod numbers;
 mod options;
 mod output;
+mod part;
 mod plot3d;
 mod recognise;
 mod registry;
 mod scanner;
 mod su2;
+mod target;
 mod turned;
 mod ugrid;
 mod vtk;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use format::Input;
 use recognise::detect;
@@ -36,7 +38,10 @@ pub use error::{Error, Fault, Flaw, Place};
 pub use field::{Field, Support, Values};
 pub use format::{Format, Holds, Reader, Writer};
 pub use options::{ReadOptions, WriteOptions};
+pub use output::{check_file, write_bytes, write_file};
+pub use part::abandon;
 pub use registry::{REGISTRY, readable, table, writable};
+pub(crate) use target::{folder, followed};
 
 use crate::mesh::Mesh;
 
@@ -69,13 +74,13 @@ pub fn is_mesh(path: &Path) -> Result<bool, Error> {
     Ok(detect(&Input::open(path)?.head()).map_or_else(|refusal| refusal.is_mesh, |_| true))
 }
 
-/// Whether a mesh could be written under this name: to be asked before long work.
+/// Whether a mesh of about `expected` bytes could be written under this name: to be asked before long work, see [`check_file`].
 ///
 /// # Errors
-/// [`Error::Format`] for a name of no known format, [`Error::Io`] where the folder does not exist.
-pub fn check_output(path: &Path) -> Result<(), Error> {
+/// [`Error::Format`] for a name of no known format, those of [`check_file`].
+pub fn check_output(path: &Path, expected: u64) -> Result<(), Error> {
     of_name(path)?;
-    check_folder(path)
+    check_file(path, expected)
 }
 
 /// The format that a file of this name is written in.
@@ -87,36 +92,10 @@ fn of_name(path: &Path) -> Result<&'static Writer, Error> {
     })
 }
 
-/// Whether the folder of a file that is to be written exists.
-///
-/// # Errors
-/// [`Error::Io`].
-pub fn check_folder(path: &Path) -> Result<(), Error> {
-    match std::fs::metadata(output::folder(path)) {
-        Ok(metadata) if metadata.is_dir() => Ok(()),
-        Ok(_) => Err(std::io::Error::other("its parent is not a folder")),
-        Err(error) => Err(error),
-    }
-    .map_err(|source| Error::Io { file: path.to_path_buf(), action: "create", source })
-}
-
-/// Writes bytes under a temporary name, renamed when complete.
-///
-/// # Errors
-/// [`Error::Io`].
-pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    write_file(path, |out| std::io::Write::write_all(out, bytes))
-}
-
-/// As [`write_bytes`], for content too large to be gathered first.
-///
-/// # Errors
-/// As [`write_bytes`].
-pub fn write_file(
-    path: &Path,
-    content: impl FnOnce(&mut std::io::BufWriter<&mut std::fs::File>) -> std::io::Result<()>,
-) -> Result<(), Error> {
-    output::write(path, |part| part.stream(|out| Ok(content(out)?)))
+/// The file beside a mesh file that is read with it, where there is one.
+#[must_use]
+pub fn beside(path: &Path) -> Option<PathBuf> {
+    if ugrid::FORMAT.is_name(path) { ugrid::mapbc::beside(path) } else { None }
 }
 
 /// Whether a file of this name would show [`WriteOptions::fields`].

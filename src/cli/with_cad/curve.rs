@@ -8,12 +8,13 @@ use clap::Args;
 
 use super::progress::Monitor;
 use super::reading::Reading;
-use super::values::{fraction, order, positive};
+use super::values::{fraction, order, positive, seconds};
 use crate::associate::Choice;
 use crate::cli::exit::{DONE, NOT_CERTIFIED, OFF_CAD, STOPPED};
+use crate::cli::files::Files;
 use crate::cli::form::{self, Form};
-use crate::cli::input;
-use crate::cli::output::{Failure, message, print, write_json};
+use crate::cli::output::{Beside, Failure, message, print, write_json};
+use crate::cli::{input, threads};
 use crate::curve::{Checkpointing, Curved, Job, Settings, Trace};
 use crate::element::Order;
 use crate::formats;
@@ -94,8 +95,8 @@ pub(in crate::cli) struct Options {
     #[arg(long, value_name = "0..1", default_value_t = 0.1, value_parser = fraction)]
     floor: f64,
     /// Threads to use [default: all cores]
-    #[arg(long, value_name = "N")]
-    threads: Option<NonZeroUsize>,
+    #[arg(long, value_name = "N", value_parser = threads::number)]
+    pub(super) threads: Option<NonZeroUsize>,
     /// Write nothing, and end with exit code 4, where boundary faces that belong to the CAD are not on it
     #[arg(long)]
     require_all: bool,
@@ -105,7 +106,7 @@ pub(in crate::cli) struct Options {
     #[command(flatten)]
     form: Form,
     /// Seconds after which smoothing ends; the mesh as it is then is certified and written
-    #[arg(long, value_name = "S", value_parser = positive)]
+    #[arg(long, value_name = "S", value_parser = seconds)]
     time_limit: Option<f64>,
     /// Keep the state of the smoothing in this file, to resume from after a crash or the end of a job
     #[arg(long, value_name = "FILE")]
@@ -140,6 +141,18 @@ impl Options {
             ([], straight) => Choice::Straight(straight.to_vec()),
             (curve, _) => Choice::Curve(curve.to_vec()),
         }
+    }
+
+    fn files(&self) -> Files {
+        let written = |path: &Option<PathBuf>| path.clone().filter(|_| !self.dry_run);
+        Files::of_mesh(&self.mesh)
+            .reads("--cad", Some(&self.cad))
+            .reads("--linkage", self.linkage.as_ref())
+            .reads("--resume", self.resume.as_ref())
+            .writes_mesh(written(&self.output))
+            .writes("--report", self.report.as_ref())
+            .writes("--trace", written(&self.trace))
+            .writes("--checkpoint", written(&self.checkpoint))
     }
 
     fn job(&self) -> Job {
@@ -180,52 +193,45 @@ impl Options {
 
 /// Curves a mesh, writes it, and prints the report.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
-    if let Some(output) = &options.output {
-        formats::check_output(output)?;
-    }
-    for path in options.report.iter().chain(&options.trace).chain(&options.checkpoint) {
-        formats::check_folder(path)?;
-    }
-    if let Some(threads) = options.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global()?;
-    }
+    options.files().check()?;
     let job = options.job();
     let Some(output) = options.output.as_ref().filter(|_| !options.dry_run) else {
         return dry_run(&job, options.report.as_deref());
     };
     let limit = options.time_limit.map(Duration::from_secs_f64);
-    let mut monitor = Monitor::new(options.quiet).stoppable(limit)?;
+    let mut monitor = Monitor::new(options.quiet).stoppable(limit);
     let mut trace = Trace::new(&mut monitor);
     let mut checkpointing = Checkpointing::new(&mut trace, options.checkpoint.clone(), options.checkpoint_every);
     let curved = job.run(&mut checkpointing);
-    if let Some(failure) = checkpointing.failure() {
-        message(format_args!("sagitta: the last checkpoint was not written: {failure}"));
-    }
-    if let (Some(path), Ok(curved)) = (&options.trace, &curved) {
-        trace.write(path, &curved.smoothed)?;
-    }
+    let kept = checkpointing.failure().map_or(Ok(()), Err);
+    let curved = match curved {
+        Ok(curved) => curved,
+        Err(error) => {
+            monitor.finish();
+            return Err(error.into());
+        }
+    };
+    // The mesh first; and the rest also where the mesh could not be written.
+    let missing = missing(options, &curved).filter(|_| !options.keep_invalid);
+    let written = if missing.is_none() { write(options, output, &curved) } else { Ok(()) };
+    let traced = options.trace.as_ref().map_or(Ok(()), |path| trace.write(path, &curved.smoothed));
     monitor.finish();
-    let curved = curved?;
+    let mut beside = Beside::default();
+    beside.tell(kept);
+    beside.tell(traced);
     let report = report(&job, &curved);
-    let missing = missing(options, &curved);
-    if missing.is_none() || options.keep_invalid {
-        write(options, output, &curved)?;
-    }
     if let Some(path) = &options.report {
-        write_json(path, &report)?;
+        beside.tell(write_json(path, &report));
     }
-    print(&report.to_string())?;
-    if let Some(stop) = monitor.stop {
-        print(&stop.to_string())?;
-    }
+    let stop = monitor.stop.map_or_else(String::new, |stop| format!("\n{stop}"));
+    beside.tell(print(&format!("{report}{stop}")));
+    written?;
     let written = output.display();
     match missing {
-        Some(why) if !options.keep_invalid => {
-            message(format_args!("sagitta: {written}: not written, as {why} (--keep-invalid writes it)"));
-        }
-        _ => print(&format!("written: {written}"))?,
+        Some(why) => message(format_args!("sagitta: {written}: not written, as {why} (--keep-invalid writes it)")),
+        None => beside.tell(print(&format!("written: {written}"))),
     }
-    Ok(if missing.is_some() { NOT_CERTIFIED } else { exit_code(&curved) })
+    Ok(beside.exit_code(exit_code(options, &curved)))
 }
 
 /// What of all that is asked for a mesh does not have.
@@ -246,11 +252,12 @@ fn is_all_on_cad(curved: &Curved) -> bool {
 /// Prints which patches lie on which CAD faces.
 fn dry_run(job: &Job, report: Option<&Path>) -> Result<u8, Failure> {
     let summary = job.association()?;
+    let mut beside = Beside::default();
     if let Some(path) = report {
-        write_json(path, &summary)?;
+        beside.tell(write_json(path, &summary));
     }
-    print(&summary.to_string())?;
-    Ok(DONE)
+    beside.tell(print(&summary.to_string()));
+    Ok(beside.exit_code(DONE))
 }
 
 fn write(options: &Options, output: &Path, curved: &Curved) -> Result<(), Failure> {
@@ -259,8 +266,10 @@ fn write(options: &Options, output: &Path, curved: &Curved) -> Result<(), Failur
     Ok(())
 }
 
-fn exit_code(curved: &Curved) -> u8 {
-    if curved.smoothed.stopped {
+fn exit_code(options: &Options, curved: &Curved) -> u8 {
+    if missing(options, curved).is_some() {
+        NOT_CERTIFIED
+    } else if curved.smoothed.stopped {
         STOPPED
     } else if !is_all_on_cad(curved) {
         OFF_CAD

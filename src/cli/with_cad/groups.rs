@@ -6,7 +6,7 @@ use cad::Model;
 use clap::Args;
 
 use super::reading::in_a_child;
-use super::values::positive;
+use super::values::seconds;
 use crate::cli::exit::DONE;
 use crate::cli::output::{Failure, print};
 use crate::report::Groups;
@@ -20,7 +20,7 @@ pub(in crate::cli) struct Options {
     #[arg(long)]
     json: bool,
     /// Seconds after which reading the CAD is abandoned
-    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = positive)]
+    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = seconds)]
     cad_timeout: f64,
 }
 

@@ -9,7 +9,8 @@ use super::reading::Reading;
 use super::values::positive;
 use crate::associate::{self, Proposal, propose};
 use crate::cli::exit::DONE;
-use crate::cli::output::{Failure, print, write_json};
+use crate::cli::files::Files;
+use crate::cli::output::{Beside, Failure, print, write_json};
 use crate::cli::{form, input};
 use crate::formats;
 use crate::mesh::{Boundary, Mesh, Skin};
@@ -54,7 +55,11 @@ struct Nothing {
 
 /// Associates a mesh with its CAD and writes the linkage.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
-    formats::check_folder(&options.output)?;
+    Files::of_mesh(&options.mesh)
+        .reads("--cad", Some(&options.cad))
+        .writes("--output", Some(&options.output))
+        .writes("--report", options.report.as_ref())
+        .check()?;
     let mesh = read_linear(&options.mesh, &input::reading())?;
     let skin = Skin::of(&mesh);
     let mesh = mesh.with_unmarked(&skin);
@@ -87,11 +92,12 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     formats::write_bytes(&options.output, &text)?;
     let mut summary = associate::summary(source, &mesh, &boundary, &model, &candidates, inference.as_ref());
     summary.notes.extend(mesh.notes().iter().cloned().chain(model.losses()).chain(written.notes));
+    let mut beside = Beside::default();
     if let Some(path) = &options.report {
-        write_json(path, &summary)?;
+        beside.tell(write_json(path, &summary));
     }
-    print(&format!("{summary}\nwritten: {}", options.output.display()))?;
-    Ok(DONE)
+    beside.tell(print(&format!("{summary}\nwritten: {}", options.output.display())));
+    Ok(beside.exit_code(DONE))
 }
 
 fn size_of(mesh: &Mesh) -> f64 {

@@ -11,13 +11,15 @@ mod reading;
 mod validate;
 mod values;
 
+use std::num::NonZeroUsize;
+
 use clap::Subcommand;
 
 use super::help;
 use super::output::Failure;
 
 pub(super) use model::describe;
-pub(super) use values::positive;
+pub(super) use values::seconds;
 
 #[derive(Subcommand)]
 pub(super) enum Command {
@@ -36,6 +38,17 @@ pub(super) enum Command {
     /// Project points onto CAD: the closest point of a set of faces and edges, and whether it is proven
     #[command(after_help = help::project())]
     Project(project::Options),
+}
+
+impl Command {
+    /// The number of threads that is asked for.
+    pub(super) fn threads(&self) -> Option<NonZeroUsize> {
+        match self {
+            Command::Curve(options) => options.threads,
+            Command::Project(options) => options.threads,
+            _ => None,
+        }
+    }
 }
 
 /// Runs one of them; gives its exit code.

@@ -1,14 +1,12 @@
 //! Progress on stderr: a live line on a terminal, plain lines elsewhere; and what ends the smoothing early.
 
 use std::io::IsTerminal;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::cli::exit::INTERRUPTED;
 use crate::cli::output::message;
+use crate::cli::signals;
 use crate::curve::{Observer, Step};
 use crate::element::Order;
 use crate::smooth::Progress;
@@ -34,7 +32,6 @@ impl std::fmt::Display for Stop {
 
 /// Shows how the work goes on, and may end the smoothing on an interrupt or after a time limit.
 pub(super) struct Monitor {
-    interrupted: Arc<AtomicBool>,
     limit: Option<Duration>,
     /// Why smoothing was ended, once it was.
     pub(super) stop: Option<Stop>,
@@ -50,29 +47,12 @@ impl Monitor {
     /// Begins to count the time.
     pub(super) fn new(quiet: bool) -> Monitor {
         let bar = (!quiet && std::io::stderr().is_terminal()).then(spinner);
-        let interrupted = Arc::default();
-        Monitor {
-            interrupted,
-            limit: None,
-            stop: None,
-            bar,
-            quiet,
-            order: None,
-            start: Instant::now(),
-            smoothing: None,
-            last: None,
-        }
+        Monitor { limit: None, stop: None, bar, quiet, order: None, start: Instant::now(), smoothing: None, last: None }
     }
 
-    /// Ends smoothing after a time limit, and takes over interrupts: the first ends the smoothing, the second the program.
-    pub(super) fn stoppable(self, limit: Option<Duration>) -> Result<Monitor, ctrlc::Error> {
-        let flag = Arc::clone(&self.interrupted);
-        ctrlc::set_handler(move || {
-            if flag.swap(true, Ordering::Relaxed) {
-                std::process::exit(i32::from(INTERRUPTED));
-            }
-        })?;
-        Ok(Monitor { limit, ..self })
+    /// Ends smoothing after a time limit, too.
+    pub(super) fn stoppable(self, limit: Option<Duration>) -> Monitor {
+        Monitor { limit, ..self }
     }
 
     /// Takes the live line away.
@@ -107,6 +87,9 @@ impl Observer for Monitor {
     }
 
     fn step(&mut self, step: Step) {
+        if step >= Step::Elevate {
+            signals::heed(); // from here on there will be a mesh to keep
+        }
         if step == Step::Smooth {
             self.smoothing = Some(Instant::now());
         }
@@ -136,7 +119,7 @@ impl Observer for Monitor {
             ));
         }
         let over = self.limit.filter(|&limit| self.start.elapsed() >= limit).map(Stop::TimeLimit);
-        self.stop = if self.interrupted.load(Ordering::Relaxed) { Some(Stop::Interrupted) } else { over };
+        self.stop = if signals::wished() { Some(Stop::Interrupted) } else { over };
         self.stop.is_none()
     }
 }

@@ -13,9 +13,11 @@ use glam::DVec3;
 use super::points;
 use super::progress::{INTERVAL, Monitor};
 use super::reading::in_a_child;
-use super::values::positive;
+use super::values::{factor, seconds};
 use crate::cli::exit::{DONE, NOT_CERTIFIED};
-use crate::cli::output::{Failure, message, print, write_json};
+use crate::cli::files::Files;
+use crate::cli::output::{Beside, Failure, message, print, write_json};
+use crate::cli::threads;
 use crate::formats;
 use crate::report::{CadReport, FeetReport};
 
@@ -39,13 +41,13 @@ pub(in crate::cli) struct Options {
     #[arg(long, value_name = "R.json")]
     report: Option<PathBuf>,
     /// Multiply the CAD's coordinates by this factor
-    #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = positive)]
+    #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = factor)]
     cad_scale: f64,
     /// Threads to use [default: all cores]
-    #[arg(long, value_name = "N")]
-    threads: Option<NonZeroUsize>,
+    #[arg(long, value_name = "N", value_parser = threads::number)]
+    pub(super) threads: Option<NonZeroUsize>,
     /// Seconds after which reading the CAD is abandoned
-    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = positive)]
+    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = seconds)]
     cad_timeout: f64,
     /// No progress on stderr
     #[arg(short, long)]
@@ -55,31 +57,33 @@ pub(in crate::cli) struct Options {
 /// Projects points onto CAD entities, writes their feet, and prints the report: on stdout, or on stderr where the feet go to stdout.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let streamed = options.output == Path::new("-");
-    let mut files = (!streamed).then_some(&options.output).into_iter().chain(&options.report);
-    files.try_for_each(|path| formats::check_folder(path))?;
-    if let Some(threads) = options.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global()?;
-    }
+    Files::default()
+        .reads("the CAD", Some(&options.cad))
+        .reads("the points", Some(&options.points))
+        .writes("--output", (!streamed).then_some(&options.output))
+        .writes("--report", options.report.as_ref())
+        .check()?;
     let monitor = Monitor::new(options.quiet);
     let outcome = project(options, &monitor);
     monitor.finish();
     let (feet, report) = outcome?;
     let mut text = Vec::new();
     points::write(&mut text, &feet)?;
+    let mut beside = Beside::default();
     if streamed {
-        print(std::str::from_utf8(&text)?.trim_end())?;
+        beside.tell(print(std::str::from_utf8(&text)?.trim_end()));
     } else {
         formats::write_bytes(&options.output, &text)?;
     }
     if let Some(path) = &options.report {
-        write_json(path, &report)?;
+        beside.tell(write_json(path, &report));
     }
     match (streamed, options.quiet) {
-        (false, _) => print(&format!("{report}\nwritten: {}", options.output.display()))?,
+        (false, _) => beside.tell(print(&format!("{report}\nwritten: {}", options.output.display()))),
         (true, false) => message(&report),
         (true, true) => {}
     }
-    Ok(if report.unproven == 0 { DONE } else { NOT_CERTIFIED })
+    Ok(beside.exit_code(if report.unproven == 0 { DONE } else { NOT_CERTIFIED }))
 }
 
 fn project(options: &Options, monitor: &Monitor) -> Result<(Vec<Option<Foot>>, FeetReport), Failure> {

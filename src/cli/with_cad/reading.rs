@@ -1,12 +1,12 @@
 //! How the CAD is read: options that several commands share.
 
-use std::path::PathBuf;
 use std::time::Duration;
 
+use cad::child::this_program;
 use cad::{ReadOptions, Reader};
 use clap::Args;
 
-use super::values::positive;
+use super::values::{factor, seconds};
 
 /// Options of reading CAD.
 #[derive(Args)]
@@ -15,7 +15,7 @@ pub(super) struct Reading {
     #[arg(long, value_name = "F|auto", default_value = "1", value_parser = scale)]
     cad_scale: Scale,
     /// Seconds after which reading the CAD is abandoned
-    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = positive)]
+    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = seconds)]
     cad_timeout: f64,
 }
 
@@ -24,7 +24,7 @@ pub(super) struct Reading {
 struct Scale(Option<f64>);
 
 fn scale(text: &str) -> Result<Scale, String> {
-    if text == "auto" { Ok(Scale(None)) } else { positive(text).map(|factor| Scale(Some(factor))) }
+    if text == "auto" { Ok(Scale(None)) } else { factor(text).map(|factor| Scale(Some(factor))) }
 }
 
 impl Reading {
@@ -41,7 +41,6 @@ impl Reading {
 
 /// This very program reads the CAD in a child process, which a malformed file may crash.
 pub(super) fn in_a_child(timeout: f64, scale: f64) -> ReadOptions {
-    let program = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("/proc/self/exe"));
-    let reader = Reader { timeout: Duration::from_secs_f64(timeout), ..Reader::new(program) };
+    let reader = Reader { timeout: Duration::from_secs_f64(timeout), ..Reader::new(this_program()) };
     ReadOptions { scale, reader: Some(reader) }
 }

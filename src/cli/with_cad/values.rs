@@ -6,10 +6,30 @@ use clap::builder::PossibleValue;
 use crate::element::Order;
 use crate::smooth::Engine;
 
-/// A finite number above 0.
-pub(in crate::cli) fn positive(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok().filter(|v| v.is_finite() && *v > 0.0);
-    value.ok_or_else(|| format!("{text:?} is not a positive number"))
+/// Seconds at most: more than 30 years.
+const LONGEST: f64 = 1e9;
+
+/// A time in seconds.
+pub(in crate::cli) fn seconds(text: &str) -> Result<f64, String> {
+    up_to(LONGEST, text).ok_or_else(|| format!("{text:?} is no number of seconds above 0 and up to {LONGEST:e}"))
+}
+
+/// Lengths and their ratios at most: more than there is between any two units.
+const LARGEST: f64 = 1e15;
+
+/// A length.
+pub(super) fn positive(text: &str) -> Result<f64, String> {
+    up_to(LARGEST, text).ok_or_else(|| format!("{text:?} is not a positive number up to {LARGEST:e}"))
+}
+
+/// What lengths are multiplied by.
+pub(super) fn factor(text: &str) -> Result<f64, String> {
+    let value = positive(text).ok().filter(|v| *v >= LARGEST.recip());
+    value.ok_or_else(|| format!("{text:?} is not a positive number from {:e} to {LARGEST:e}", LARGEST.recip()))
+}
+
+fn up_to(largest: f64, text: &str) -> Option<f64> {
+    text.parse::<f64>().ok().filter(|v| *v > 0.0 && *v <= largest)
 }
 
 /// A number from 0 to 1.

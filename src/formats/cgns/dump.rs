@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use hdf5_metno as hdf5;
+use hdf5_metno::plist::file_access::FileCloseDegree;
 use hdf5_metno::types::{FixedAscii, IntSize, TypeDescriptor, VarLenAscii};
 
 use super::labels::{self, kind};
@@ -19,17 +20,17 @@ pub(super) fn room(length: u64) -> u64 {
     MEMORY.saturating_add(length.saturating_mul(4))
 }
 
-/// Opens and creates files without a lock: nobody writes to one that is read, or knows of one that is written, and some file
-/// systems have no locks.
-pub(super) fn unlocked() -> hdf5::FileBuilder {
-    let mut builder = hdf5::FileBuilder::new();
-    builder.with_fapl(|access| access.file_locking(false));
-    builder
+/// Opens a file for reading; without a lock, as nobody writes to it and some file systems have none.
+pub(super) fn open(path: &Path) -> hdf5::Result<hdf5::File> {
+    hdf5::FileBuilder::new().with_fapl(|access| access.file_locking(false)).open(path)
 }
 
-/// Opens a file for reading.
-pub(super) fn open(path: &Path) -> hdf5::Result<hdf5::File> {
-    unlocked().open(path)
+/// Creates a file, or empties the one that has the name. All of it is closed with it, and arrays are handed to the system when they are
+/// written, not when a handle is dropped, where nobody would hear that it refused.
+pub(super) fn create(path: &Path) -> hdf5::Result<hdf5::File> {
+    hdf5::FileBuilder::new()
+        .with_fapl(|access| access.file_locking(false).fclose_degree(FileCloseDegree::Strong).sieve_buf_size(0))
+        .create(path)
 }
 
 /// Writes the tree of a file, or why there is none; arrays take `room` bytes at most.

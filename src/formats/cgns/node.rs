@@ -4,14 +4,20 @@ use hdf5_metno as hdf5;
 use hdf5_metno::H5Type;
 use hdf5_metno::types::FixedAscii;
 
-use crate::formats::output::Unwritten;
+use crate::formats::part::Unwritten;
 
 /// Longest name of a node, by the standard.
 pub(super) const LONGEST_NAME: usize = 32;
 
 impl From<hdf5::Error> for Unwritten {
     fn from(error: hdf5::Error) -> Unwritten {
-        Unwritten::Io(std::io::Error::other(error.to_string()))
+        let text = error.to_string();
+        // The library tells of the system's number among many others, over several lines.
+        let number = text.split("errno = ").nth(1).and_then(|rest| rest.split(',').next()?.parse().ok());
+        Unwritten::Io(match number {
+            Some(number) => std::io::Error::from_raw_os_error(number),
+            None => std::io::Error::other(text.lines().map(str::trim).collect::<Vec<_>>().join(" ")),
+        })
     }
 }
 

@@ -15,7 +15,7 @@ use super::labels;
 use super::node::{Data, LONGEST_NAME, Node};
 use super::type_code;
 use crate::element::Cell;
-use crate::formats::output::Unwritten;
+use crate::formats::part::Unwritten;
 use crate::mesh::{Block, EntityKey, Mesh, PhysicalName};
 
 /// Version of the standard that the files keep to.
@@ -23,8 +23,10 @@ const VERSION: f32 = 3.4;
 
 /// Writes a mesh. Equal meshes make equal bytes.
 pub(super) fn write(path: &Path, mesh: &Mesh) -> Result<(), Unwritten> {
-    let file = dump::unlocked().create(path)?;
+    let file = dump::create(path)?;
     fill(&file, mesh)?;
+    // Here the library tells of what it could not write; when a handle is dropped it does not.
+    file.flush()?;
     file.close()?;
     // What the library has written, it must be able to open; only then is it worth a name.
     dump::open(path)?.group("Base")?;

@@ -7,7 +7,7 @@ use super::keyword::{self, Keyword};
 use super::node_order;
 use super::sink::{Form, Sink};
 use crate::element::{Cell, Order, lattice};
-use crate::formats::output::Unwritten;
+use crate::formats::part::Unwritten;
 use crate::mesh::{Block, Mesh, NodeId};
 
 /// Writes a mesh, as bytes or as text. Equal meshes make equal bytes.

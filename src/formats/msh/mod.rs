@@ -31,7 +31,7 @@ use source::{Bytes, Text};
 use super::detect::Verdict;
 use super::error::{Fault, Flaw};
 use super::format::{Format, Holds, Reader, Writer};
-use super::output::Unwritten;
+use super::part::Unwritten;
 use super::scanner::Scanner;
 use crate::element::{Cell, Order};
 use crate::mesh::Mesh;

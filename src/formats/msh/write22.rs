@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::sink::Sink;
 use super::type_code;
 use super::write41::slots;
-use crate::formats::output::Unwritten;
+use crate::formats::part::Unwritten;
 use crate::mesh::{Block, Entity, EntityKey, Mesh};
 
 /// Writes all sections after `$PhysicalNames`.

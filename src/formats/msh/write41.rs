@@ -6,7 +6,7 @@ use super::node_order::ORDER;
 use super::outline::Outline;
 use super::sink::Sink;
 use super::type_code;
-use crate::formats::output::Unwritten;
+use crate::formats::part::Unwritten;
 use crate::mesh::Mesh;
 
 /// Writes all sections after `$PhysicalNames`.

@@ -39,7 +39,7 @@ pub(super) fn apply(mesh: &mut Parts, path: &Path) -> Result<(), Error> {
 }
 
 /// `case.mapbc` or `case.lb8.mapbc` for `case.lb8.ugrid`.
-fn beside(path: &Path) -> Option<PathBuf> {
+pub(in crate::formats) fn beside(path: &Path) -> Option<PathBuf> {
     let first = path.with_extension("mapbc");
     let second = path.with_extension("").with_extension("mapbc");
     [second, first].into_iter().find(|file| file.is_file())

@@ -4,7 +4,7 @@
 //! tell. Names of surfaces stand in a `.mapbc` file beside it.
 
 mod kind;
-mod mapbc;
+pub(super) mod mapbc;
 
 use std::io::BufRead;
 

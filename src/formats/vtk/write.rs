@@ -13,7 +13,7 @@ use super::node_order::{ORDER, pyramid_as_hex};
 use super::type_code;
 use crate::element::{Cell, Order};
 use crate::formats::field::{Field, Support, Values};
-use crate::formats::output::Unwritten;
+use crate::formats::part::Unwritten;
 use crate::mesh::{Block, Entity, EntityKey, Mesh};
 
 /// Writes a mesh and fields on it; with `volume_only` without the cells below the mesh's top dimension, which

@@ -1,0 +1,85 @@
+//! Signals that ask the program to end: an interrupt (Ctrl-C), `kill`, the end of a terminal or a session.
+//!
+//! While there is nothing to keep the first of them ends the program. From [`heed`] on the first is a wish that the command looks for, and
+//! the second ends the program. Signals at nearly the same time are one wish: `timeout` sends one to the program and one to its group.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc;
+use std::time::{Duration, Instant};
+
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
+use signal_hook::iterator::Signals;
+use signal_hook::low_level::{exit, signal_name};
+
+use super::exit::INTERRUPTED;
+use super::output::message;
+use crate::formats;
+
+/// Signals so soon after the first wish are the same wish.
+const ONE_WISH: Duration = Duration::from_secs(1);
+
+/// How long the last message may take: whoever reads stderr may have stopped reading.
+const LAST_MESSAGE: Duration = Duration::from_millis(500);
+
+/// Whether the command looks for the first wish.
+static HEEDED: AtomicBool = AtomicBool::new(false);
+
+/// Whether there was one.
+static WISHED: AtomicBool = AtomicBool::new(false);
+
+/// Takes the signals over, but those that whoever started the program has it ignore (`nohup`, `&` in a script). A file that grows over
+/// the limit of file sizes becomes an error of writing instead of the end.
+///
+/// # Errors
+/// The system has no thread or no pipe left.
+pub(super) fn take_over() -> std::io::Result<()> {
+    signal_hook::flag::register(SIGXFSZ, Arc::default())?;
+    let ignored = ignored();
+    let heard = [SIGHUP, SIGINT, SIGTERM].into_iter().filter(|signal| ignored & (1 << (signal - 1)) == 0);
+    let mut signals = Signals::new(heard)?;
+    let serve = move || {
+        let mut first: Option<Instant> = None;
+        for signal in signals.forever() {
+            let same = first.is_none_or(|first| first.elapsed() < ONE_WISH);
+            if HEEDED.load(Ordering::Relaxed) && same {
+                first.get_or_insert_with(Instant::now);
+                WISHED.store(true, Ordering::Relaxed);
+            } else {
+                end(signal);
+            }
+        }
+    };
+    std::thread::Builder::new().name("signals".into()).spawn(serve).map(drop)
+}
+
+/// From here on the first wish to end only shows in [`wished`].
+#[cfg(feature = "cad")]
+pub(super) fn heed() {
+    HEEDED.store(true, Ordering::Relaxed);
+}
+
+/// Whether the command should come to its end.
+#[cfg(feature = "cad")]
+pub(super) fn wished() -> bool {
+    WISHED.load(Ordering::Relaxed)
+}
+
+/// Ends the program at once, without files half written.
+fn end(signal: i32) -> ! {
+    formats::abandon();
+    let (sender, told) = mpsc::channel();
+    std::thread::spawn(move || {
+        message(format_args!("sagitta: interrupted ({}): nothing is written", signal_name(signal).unwrap_or("signal")));
+        let _ = sender.send(()); // nobody waits any longer
+    });
+    let _ = told.recv_timeout(LAST_MESSAGE);
+    exit(INTERRUPTED.into()) // handlers of libraries for the end would run beside their own threads
+}
+
+/// Signals that are ignored since before the program began, as a mask; none where the system does not tell.
+fn ignored() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
+}
