@@ -2,18 +2,42 @@
 //!
 //! The program executes itself with a hidden subcommand. The child writes its answer to its standard output, within limits of
 //! memory and time; whatever happens to it, the parent gets an answer. CAD files are read so, and mesh files whose library is C.
+//!
+//! It is in a process group of its own, so that what is sent to the parent's (Ctrl-C, `timeout`) is dealt with by the parent, and ends
+//! when its parent does.
 
-use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
+use rustix::process::{
+    Pid, Resource, Rlimit, Signal, getpid, getppid, getrlimit, kill_process, kill_process_group, setrlimit,
+};
 use std::ffi::OsStr;
 use std::fs::File;
 use std::io::{self, Read};
-use std::path::Path;
+use std::os::unix::process::{CommandExt, ExitStatusExt};
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::mpsc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Variable in which the parent hands the memory limit (bytes) to the child.
 const MEMORY_VARIABLE: &str = "SAGITTA_READER_MEMORY";
+
+/// Variable in which the parent hands its own number and the child's time (milliseconds) to the child.
+const WATCH_VARIABLE: &str = "SAGITTA_READER_WATCH";
+
+/// Variable that tells the number of threads.
+const THREADS_VARIABLE: &str = "RAYON_NUM_THREADS";
+
+/// Threads of the child at most: each takes up to 128 MB of the address space for the allocator alone.
+const THREADS: usize = 8;
+
+/// What the child has beyond the time after which the parent ends it: it ends itself only where the parent cannot.
+const GRACE: Duration = Duration::from_secs(2);
+
+/// Time between two looks of the child at its parent and the clock.
+const LOOK: Duration = Duration::from_millis(500);
+
+/// Signals that a process is sent for what itself does: SIGILL, SIGTRAP, SIGABRT, SIGBUS, SIGFPE, SIGSEGV, SIGSYS.
+const OWN_FAULTS: [i32; 7] = [4, 5, 6, 7, 8, 11, 31];
 
 /// How lines of the child's standard error begin that tell of malformed things.
 const WARNING_PREFIX: &str = "sagitta-warning ";
@@ -41,6 +65,21 @@ pub struct Outcome {
     pub warnings: Vec<String>,
 }
 
+impl Outcome {
+    /// The signal by which someone else ended it: the system, which has no memory left, or a user.
+    #[must_use]
+    pub fn killed(&self) -> Option<i32> {
+        self.status.signal().filter(|signal| !OWN_FAULTS.contains(signal))
+    }
+}
+
+/// This very program, for [`run`]: the file that it was started from, also where an upgrade has put another in its place since.
+#[must_use]
+pub fn this_program() -> PathBuf {
+    let own = PathBuf::from("/proc/self/exe");
+    if own.exists() { own } else { std::env::current_exe().unwrap_or(own) }
+}
+
 /// Why there is no outcome.
 #[derive(Debug, thiserror::Error)]
 pub enum ChildError {
@@ -55,6 +94,12 @@ pub enum ChildError {
     Run(#[from] io::Error),
 }
 
+impl ChildError {
+    /// What to say of a child that [was killed](Outcome::killed).
+    pub const KILLED: &str =
+        "not by what is in the file: the system does so where memory runs out (dmesg tells), and users can; try again";
+}
+
 /// Runs `program subcommand path` with these variables, to its end or the time limit.
 ///
 /// # Errors
@@ -66,10 +111,14 @@ pub fn run(
     variables: &[(&str, String)],
     limits: Limits,
 ) -> Result<Outcome, ChildError> {
+    let watch = format!("{} {}", getpid().as_raw_nonzero(), limits.timeout.saturating_add(GRACE).as_millis());
     let mut child = Command::new(program)
         .arg(subcommand)
         .arg(path)
+        .process_group(0)
         .env(MEMORY_VARIABLE, limits.memory.to_string())
+        .env(WATCH_VARIABLE, watch)
+        .env(THREADS_VARIABLE, threads().to_string())
         .envs(variables.iter().map(|(name, value)| (OsStr::new(name), value)))
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
@@ -94,6 +143,13 @@ pub fn run(
     Ok(Outcome { bytes: bytes?, status, warnings: listening.join().unwrap_or_default() })
 }
 
+/// Threads of the child: as many as the environment says or there are cores, within the bound.
+fn threads() -> usize {
+    let told = std::env::var(THREADS_VARIABLE).ok().and_then(|text| text.parse().ok()).filter(|&number| number > 0);
+    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+    told.unwrap_or_else(cores).min(THREADS)
+}
+
 /// Warnings among the first lines of the child's standard error; the rest is read and dropped, so that the child never waits.
 fn warnings_in(mut errors: impl Read) -> Vec<String> {
     let mut bytes = Vec::new();
@@ -104,14 +160,40 @@ fn warnings_in(mut errors: impl Read) -> Vec<String> {
     text.lines().filter_map(|line| line.strip_prefix(WARNING_PREFIX)).map(str::to_owned).collect()
 }
 
-/// Ends the child and collects it; it may have ended by itself meanwhile.
+/// Ends the child with what it may have started, and collects it; it may have ended by itself meanwhile.
 fn end(child: &mut Child) {
-    let _ = child.kill();
+    let _ = kill_process_group(Pid::from_child(child), Signal::KILL);
     let _ = child.wait();
 }
 
-/// In the child: keeps to the memory limit that the parent has set.
-pub fn limit_memory() {
+/// In the child, first of all: keeps to the limits that the parent has set, and ends with it.
+pub fn keep_to_limits() {
+    end_with_parent();
+    limit_memory();
+}
+
+/// Has the child end at once when its parent ends, and by itself some time after its parent should have ended it. A child without a parent
+/// that says so is left alone.
+fn end_with_parent() {
+    let Ok(watch) = std::env::var(WATCH_VARIABLE) else { return };
+    let mut numbers = watch.split(' ').map(str::parse::<u64>);
+    let (Some(Ok(parent)), Some(Ok(time))) = (numbers.next(), numbers.next()) else { return };
+    let parent = i32::try_from(parent).ok().and_then(Pid::from_raw);
+    // The system tells of the end of the parent's thread, which waits for the child.
+    #[cfg(target_os = "linux")]
+    let _ = rustix::process::set_parent_process_death_signal(Some(Signal::KILL));
+    let (start, time) = (Instant::now(), Duration::from_millis(time));
+    let watch = move || {
+        while getppid() == parent && start.elapsed() < time {
+            std::thread::sleep(LOOK);
+        }
+        let _ = kill_process(getpid(), Signal::KILL);
+    };
+    // Without a thread the signal of the system is left.
+    let _ = std::thread::Builder::new().stack_size(1 << 16).spawn(watch);
+}
+
+fn limit_memory() {
     let Some(bytes) = std::env::var(MEMORY_VARIABLE).ok().and_then(|text| text.parse().ok()) else { return };
     let maximum = getrlimit(Resource::As).maximum;
     let current = maximum.map_or(bytes, |maximum: u64| maximum.min(bytes));

@@ -106,6 +106,22 @@ pub enum ReadError {
         /// What OCCT's checks said of entities before it crashed.
         warnings: Vec<String>,
     },
+    /// Someone ended the reading process: the system, for want of memory, or a user.
+    #[error("{}: the reading process was killed ({status}); {}", path.display(), ChildError::KILLED)]
+    Killed {
+        /// The CAD file.
+        path: PathBuf,
+        /// Signal of the child.
+        status: ExitStatus,
+    },
+    /// The reading program ended well without an answer.
+    #[error("{}: the reading process {} gave no answer: it is no reader of this version; start again", path.display(), reader.display())]
+    NoAnswer {
+        /// The CAD file.
+        path: PathBuf,
+        /// The program.
+        reader: PathBuf,
+    },
     /// Reading took too long.
     #[error("{}: reading took longer than {} s and was ended: a malformed file, or raise the time limit{}", path.display(), limit.as_secs_f64(), suspects(warnings))]
     TimedOut {
@@ -174,7 +190,9 @@ fn of_cause(path: &Path, cause: String) -> ReadError {
 fn read_by(reader: &Reader, path: &Path, scale: f64) -> Result<Model, ReadError> {
     let owned = || path.to_path_buf();
     let out_of_memory = || ReadError::OutOfMemory { path: owned(), limit: reader.memory_limit };
-    let Outcome { bytes, status, warnings } = run(reader, path, scale)?;
+    let outcome = run(reader, path, scale)?;
+    let killed = outcome.killed().is_some();
+    let Outcome { bytes, status, warnings } = outcome;
     match payload::read(&bytes) {
         Some((Answer::Model(description), shape)) => {
             let refused = |cause: String| ReadError::Refused { path: owned(), cause };
@@ -184,6 +202,8 @@ fn read_by(reader: &Reader, path: &Path, scale: f64) -> Result<Model, ReadError>
         Some((Answer::Failure(cause), _)) if is_memory(&cause) => Err(out_of_memory()),
         Some((Answer::Failure(cause), _)) => Err(of_cause(path, cause + &suspects(&warnings))),
         // Rust's allocator aborts where C++ throws
+        None if killed => Err(ReadError::Killed { path: owned(), status }),
+        None if status.success() => Err(ReadError::NoAnswer { path: owned(), reader: reader.program.clone() }),
         None if status.signal() == Some(6) => Err(out_of_memory()),
         None => Err(ReadError::Crashed { path: owned(), status, warnings }),
     }

@@ -26,7 +26,7 @@ pub(crate) const SCALE_VARIABLE: &str = "SAGITTA_READER_SCALE";
 /// Body of the hidden subcommand: reads the file with OCCT, rehearses on every entity what the parent will do, and writes the model to
 /// standard output. Nothing else reaches standard output, whatever OCCT prints.
 pub fn serve_reader(path: &Path) -> ExitCode {
-    child::limit_memory();
+    child::keep_to_limits();
     let Some(out) = child::take_stdout() else { return ExitCode::FAILURE };
     let (answer, shape) = match rehearsed(path) {
         Ok((description, shape)) => (Answer::Model(description), shape),

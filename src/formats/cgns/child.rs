@@ -20,7 +20,7 @@ const SECONDS: u64 = 60;
 /// Body of the hidden subcommand: reads the tree and writes it to standard output.
 #[must_use]
 pub fn serve_reader(path: &Path) -> ExitCode {
-    cad::child::limit_memory();
+    cad::child::keep_to_limits();
     let Some(out) = cad::child::take_stdout() else { return ExitCode::FAILURE };
     let length = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
     match dump::write(path, dump::room(length), &mut BufWriter::with_capacity(1 << 20, out)) {
@@ -45,6 +45,10 @@ pub(super) fn ask(program: &Path, path: &Path, length: u64) -> Result<Vec<u8>, E
             Error::Io { file: path.to_path_buf(), action: "read", source: std::io::Error::other(what) }
         }
     })?;
+    if outcome.killed().is_some() {
+        let what = format!("the reading process was killed ({}); {}", outcome.status, ChildError::KILLED);
+        return Err(Error::Io { file: path.to_path_buf(), action: "read", source: std::io::Error::other(what) });
+    }
     match (outcome.status.success(), outcome.status.signal()) {
         (true, _) => Ok(outcome.bytes),
         // Rust's allocator aborts where it gets no memory.
