@@ -18,7 +18,7 @@ SAGITTA := $(TARGET)/release/sagitta
 
 # The steps of a target run in their order, also under -j.
 .NOTPARALLEL:
-.PHONY: help setup setup-build build demo venv test lint unit examples bench oracle table engines picture bench-cases consumers figures schema doc
+.PHONY: help setup setup-build build demo venv test lint unit examples bench oracle table engines picture bench-cases consumers figures reliability schema doc
 
 help: ## this list
 	@echo "sagitta curves linear viscous CFD meshes onto their CAD. Targets:"
@@ -92,6 +92,9 @@ picture: build venv ## the README's picture of the weeble: fixtures/pictures/wee
 consumers: setup build ## curved meshes given to Gmsh, meshio, MFEM, PyFR, PyHOPE, VTK and cgnscheck, and what they find; minutes
 	@WANTED=tests/consumers/requirements.txt VENV=.venv-consumers PYTHON="$(PYTHON)" .ci/venv
 	.venv-consumers/bin/python tests/consumers/consume.py $(SAGITTA) | tee $(TARGET)/consumers.md
+
+reliability: build ## kills at random times, full disks, signals in each step: what is left behind; root or `unshare -Urm`; 10 minutes
+	$(PYTHON) tests/reliability/harm.py $(SAGITTA)
 
 schema: ## write the JSON Schemas of the reports to docs/schema
 	cargo test --test suite --profile $(TEST_PROFILE) schema::write -- --ignored

@@ -16,6 +16,7 @@ fn most() -> usize {
 const VARIABLE: &str = "RAYON_NUM_THREADS";
 
 /// The number of `--threads`.
+#[cfg(feature = "cad")]
 pub(super) fn number(text: &str) -> Result<NonZeroUsize, String> {
     let most = most();
     let number = text.parse::<NonZeroUsize>().ok().filter(|number| number.get() <= most);

@@ -234,6 +234,9 @@ fn linkage_that_refers_to_nothing() {
         let at: Vec<&str> = told.split(name).nth(1).unwrap().splitn(4, ':').collect();
         assert!(at.len() == 4 && at[1..3].iter().all(|n| n.trim().parse::<u64>().is_ok()), "{told}");
     }
+    // What is not where the file says is the file's fault, whatever the mesh and the CAD are called.
+    let elsewhere = place.linkage("elsewhere.xml", r#"ref="edge-3""#, r#"ref="edge-9""#);
+    place.refuses(Input::linkage(elsewhere), &["elsewhere.xml for ", "is associated with edge:9"]);
     let other = fixture("torus", "meshlink.xml");
     place.refuses(Input::linkage(&other), &["torus.meshlink.xml:", "no boundary face"]);
     let text = std::fs::read_to_string(fixture(CASE, "meshlink.xml")).unwrap();
