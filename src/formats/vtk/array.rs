@@ -46,7 +46,14 @@ impl Number {
     }
 
     /// Appends the numbers that stand in bytes.
-    pub(super) fn decode(self, bytes: &[u8], big_endian: bool, values: &mut Values) {
+    ///
+    /// # Errors
+    /// [`Fault::Number`] for a real number that is not whole, where whole ones are wanted; [`Fault::Truncated`] where the bytes
+    /// are not those of so many numbers.
+    pub(super) fn decode(self, bytes: &[u8], big_endian: bool, values: &mut Values) -> Result<(), Fault> {
+        if !bytes.len().is_multiple_of(self.width()) {
+            return Err(Fault::Truncated("a number of an array"));
+        }
         macro_rules! each {
             ($type:ty) => {
                 bytes.chunks_exact(self.width()).map(|chunk| {
@@ -64,6 +71,18 @@ impl Number {
                 }
             };
         }
+        macro_rules! push_real {
+            ($type:ty) => {
+                match values {
+                    Values::Whole(values) => {
+                        for x in each!($type) {
+                            values.push(whole(x.into())?);
+                        }
+                    }
+                    Values::Real(values) => values.extend(each!($type).map(f64::from)),
+                }
+            };
+        }
         match self {
             Number::I8 => push!(i8),
             Number::U8 => push!(u8),
@@ -73,10 +92,23 @@ impl Number {
             Number::U32 => push!(u32),
             Number::I64 => push!(i64),
             Number::U64 => push!(u64),
-            Number::F32 => push!(f32),
-            Number::F64 => push!(f64),
+            Number::F32 => push_real!(f32),
+            Number::F64 => push_real!(f64),
         }
+        Ok(())
     }
+}
+
+/// A real number that is a whole one.
+///
+/// # Errors
+/// [`Fault::Number`].
+fn whole(x: f64) -> Result<i64, Fault> {
+    // Beyond 2^53 neighbouring whole numbers are one real number.
+    if x.fract() == 0.0 && x.abs() <= (1_u64 << 53) as f64 {
+        return Ok(x as i64);
+    }
+    Err(Fault::Number { what: "a whole number of an array", found: x.to_string() })
 }
 
 /// Numbers as they are wanted, whatever type the file has.
@@ -94,18 +126,26 @@ impl Values {
             Values::Whole(values) => match word.parse() {
                 Ok(value) => values.push(value),
                 // Some writers put whole numbers down as reals.
-                Err(_) => values.push(word.parse::<f64>().map_err(|_| wrong())? as i64),
+                Err(_) => values.push(whole(word.parse().map_err(|_| wrong())?).map_err(|_| wrong())?),
             },
             Values::Real(values) => values.push(word.parse().map_err(|_| wrong())?),
         }
         Ok(())
     }
 
-    /// The whole numbers.
-    pub(super) fn whole(self) -> Vec<i64> {
+    /// How many there are.
+    pub(super) fn len(&self) -> usize {
         match self {
-            Values::Whole(values) => values,
-            Values::Real(values) => values.into_iter().map(|x| x as i64).collect(),
+            Values::Whole(values) => values.len(),
+            Values::Real(values) => values.len(),
+        }
+    }
+
+    /// The whole numbers; `None` where some are not whole.
+    pub(super) fn whole(self) -> Option<Vec<i64>> {
+        match self {
+            Values::Whole(values) => Some(values),
+            Values::Real(values) => values.into_iter().map(|x| whole(x).ok()).collect(),
         }
     }
 

@@ -17,6 +17,16 @@ pub(super) enum VtkFault {
     CellNodes { tag: u64, code: i64, found: usize },
     #[error("an array cannot be decoded ({0}): the file is damaged")]
     Compressed(String),
+    #[error("the array {name} has {found} values for {cells} cells: the file is damaged")]
+    ArrayLength { name: String, found: usize, cells: usize },
+    #[error("the section {0} occurs twice")]
+    Repeated(&'static str),
+    #[error(
+        "an array's blocks hold {announced} bytes when expanded, but no more than {limit} can be of use here: the file is damaged or hostile"
+    )]
+    Expanded { announced: u64, limit: u64 },
+    #[error("{0} bytes follow the values of an array that stands in place: the file is damaged")]
+    Leftover(usize),
     #[error("the XML is damaged: {0}")]
     Xml(String),
 }

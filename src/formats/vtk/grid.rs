@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
+use super::array::Values;
 use super::fault::VtkFault;
 use super::node_order::{BEFORE_21, ORDER};
 use super::type_code::{self, Type};
@@ -12,11 +13,11 @@ use crate::formats::error::Fault;
 use crate::mesh::{EntityKey, Mesh, NodeId};
 
 /// Cell arrays that tell the entity of a cell, the most telling first: this program's and Gmsh's, then other programs'.
-pub(super) const ENTITY_ARRAYS: [&str; 7] =
+const ENTITY_ARRAYS: [&str; 7] =
     ["CellEntityIds", "gmsh:geometrical", "medit:ref", "attribute", "material", "gmsh:physical", "patch"];
 
 /// Cell arrays that tell the physical group of a cell beside its entity.
-pub(super) const GROUP_ARRAYS: [&str; 2] = ["patch", "gmsh:physical"];
+const GROUP_ARRAYS: [&str; 2] = ["patch", "gmsh:physical"];
 
 /// An unstructured grid as VTK files hold it.
 #[derive(Debug, Default)]
@@ -28,24 +29,67 @@ pub(super) struct Grid {
     pub(super) types: Vec<i64>,
     /// Whole-number cell arrays of [`ENTITY_ARRAYS`] and [`GROUP_ARRAYS`].
     pub(super) arrays: BTreeMap<String, Vec<i64>>,
+    /// Names of such arrays whose numbers are not all whole.
+    pub(super) unusable: Vec<String>,
     /// Whether the file is of a version in which two edges of Lagrange hexes stood the other way round.
     pub(super) old_hexes: bool,
 }
 
 impl Grid {
-    /// The mesh.
-    ///
-    /// # Errors
-    /// A [`Fault`] of the arrays.
-    pub(super) fn mesh(self) -> Result<Mesh, Fault> {
+    /// Whether a cell array is of use.
+    pub(super) fn wants(name: &str) -> bool {
+        ENTITY_ARRAYS.contains(&name) || GROUP_ARRAYS.contains(&name)
+    }
+
+    /// Takes a cell array of one component in, if it is of use; of several pieces of a file one behind the other.
+    pub(super) fn take(&mut self, name: &str, values: Values) {
+        if !Grid::wants(name) {
+            return;
+        }
+        match values.whole() {
+            Some(values) => self.arrays.entry(name.to_owned()).or_default().extend(values),
+            None => self.unusable.push(name.to_owned()),
+        }
+    }
+
+    /// Refuses arrays that do not fit each other.
+    fn compare(&self) -> Result<(), Fault> {
         let cells = self.types.len();
         if self.offsets.len() != cells {
             let (announced, found) = (cells as u64, self.offsets.len() as u64);
             return Err(Fault::Miscounted { what: "ends of cells", announced, found });
         }
+        let last = self.offsets.last().copied().unwrap_or(0);
+        if usize::try_from(last) != Ok(self.connectivity.len()) {
+            let (announced, found) = (last.unsigned_abs(), self.connectivity.len() as u64);
+            return Err(Fault::Miscounted { what: "nodes of cells", announced, found });
+        }
+        if !self.points.len().is_multiple_of(3) {
+            return Err(Fault::Truncated("the points"));
+        }
+        for (name, values) in &self.arrays {
+            if values.len() != cells {
+                return Err(VtkFault::ArrayLength { name: name.clone(), found: values.len(), cells }.into());
+            }
+        }
+        Ok(())
+    }
+
+    /// The mesh.
+    ///
+    /// # Errors
+    /// A [`Fault`] of the arrays.
+    pub(super) fn mesh(mut self) -> Result<Mesh, Fault> {
+        let unusable = std::mem::take(&mut self.unusable);
+        unusable.iter().for_each(|name| drop(self.arrays.remove(name)));
+        self.compare()?;
+        let cells = self.types.len();
         let points = self.points.chunks_exact(3).map(DVec3::from_slice).collect();
         let mut assembly = Assembly::new(points)?;
-        let whole = |name: &&str| self.arrays.get(*name).filter(|values| values.len() == cells);
+        for name in unusable {
+            assembly.parts.notes.push(format!("the cell array {name} is not used: not all of its numbers are whole"));
+        }
+        let whole = |name: &&str| self.arrays.get(*name);
         let entities = ENTITY_ARRAYS.iter().find_map(whole);
         let groups = GROUP_ARRAYS.iter().find_map(whole).or(entities);
         let mut tags: BTreeMap<EntityKey, Vec<i32>> = BTreeMap::new();
@@ -95,7 +139,9 @@ impl Grid {
             Type::Unknown => return Err(VtkFault::UnknownCell { tag, code }.into()),
         };
         assembly.set_order(cell, order)?;
-        let file_order = if self.old_hexes { &BEFORE_21 } else { &ORDER };
+        // The order of VTK's quadratic cells is that of the Lagrange cells, and has been the same in all versions.
+        let lagrange = i64::from(type_code::LAGRANGE_HEX) == code;
+        let file_order = if self.old_hexes && lagrange { &BEFORE_21 } else { &ORDER };
         let slots = file_order.slots(cell, order).unwrap_or_default();
         nodes.clear();
         nodes.resize(numbers.len(), NodeId::default());

@@ -3,7 +3,8 @@
 use std::io::BufRead;
 
 use super::array::{Number, Values};
-use super::grid::{ENTITY_ARRAYS, GROUP_ARRAYS, Grid};
+use super::fault::VtkFault;
+use super::grid::Grid;
 use crate::formats::error::{Fault, Flaw};
 use crate::formats::scanner::Scanner;
 use crate::mesh::Mesh;
@@ -69,15 +70,25 @@ impl<R: BufRead> File<R> {
         match words[..] {
             ["POINTS", count, kind] => {
                 let count = self.count(count)?;
+                self.once("POINTS", self.grid.points.is_empty())?;
                 self.grid.points = self.array(kind, count.saturating_mul(3), false)?.real();
             }
             ["CELLS", count, size] => self.cells(count, size)?,
             ["CELL_TYPES", count] => {
                 let count = self.count(count)?;
-                self.grid.types = self.array("int", count, true)?.whole();
+                self.once("CELL_TYPES", self.grid.types.is_empty())?;
+                self.grid.types = self.whole("int", count)?;
             }
-            ["CELL_DATA", count] => self.values_of = Some(Support::Cells(self.count(count)?)),
-            ["POINT_DATA", count] => self.values_of = Some(Support::Points(self.count(count)?)),
+            ["CELL_DATA", count] => {
+                let count = self.count(count)?;
+                self.compare("cells (CELL_DATA)", count, self.grid.types.len())?;
+                self.values_of = Some(Support::Cells(count));
+            }
+            ["POINT_DATA", count] => {
+                let count = self.count(count)?;
+                self.compare("points (POINT_DATA)", count, self.grid.points.len() / 3)?;
+                self.values_of = Some(Support::Points(count));
+            }
             ["SCALARS", name, kind, ref rest @ ..] => {
                 let components = rest.first().map_or(Ok(1), |word| self.count(word))?;
                 let table = self.scanner.full_line("LOOKUP_TABLE")?;
@@ -109,20 +120,36 @@ impl<R: BufRead> File<R> {
         word.parse().map_err(|_| self.flaw(Fault::Number { what: "a count", found: found() }))
     }
 
+    /// Refuses a second section of a kind.
+    fn once(&self, section: &'static str, first: bool) -> Result<(), Flaw> {
+        if first { Ok(()) } else { Err(self.flaw(VtkFault::Repeated(section))) }
+    }
+
+    /// Holds a count against what there is.
+    fn compare(&self, what: &'static str, announced: u64, found: usize) -> Result<(), Flaw> {
+        let found = found as u64;
+        if announced == found { Ok(()) } else { Err(self.flaw(Fault::Miscounted { what, announced, found })) }
+    }
+
     /// Connectivity: each cell with its count before it, or, from version 5.0 on, ends and nodes as two arrays.
     fn cells(&mut self, count: &str, size: &str) -> Result<(), Flaw> {
         let (count, size) = (self.count(count)?, self.count(size)?);
+        self.once("CELLS", self.grid.offsets.is_empty())?;
         let is_offsets = self.scanner.next_is(b"OFFSETS")?;
         if is_offsets {
             let kind = self.typed("OFFSETS")?;
-            let mut offsets = self.array(&kind, count, true)?.whole();
+            let mut offsets = self.whole(&kind, count)?;
+            if let Some(first) = offsets.first().filter(|&&first| first != 0) {
+                let found = first.to_string();
+                return Err(self.flaw(Fault::Number { what: "the first of OFFSETS, which is 0", found }));
+            }
             offsets.drain(..offsets.len().min(1));
             self.grid.offsets = offsets;
             let kind = self.typed("CONNECTIVITY")?;
-            self.grid.connectivity = self.array(&kind, size, true)?.whole();
+            self.grid.connectivity = self.whole(&kind, size)?;
             return Ok(());
         }
-        let values = self.array("int", size, true)?.whole();
+        let values = self.whole("int", size)?;
         let mut rest = &values[..];
         while let Some((&nodes, more)) = rest.split_first() {
             let nodes = usize::try_from(nodes).ok().filter(|&nodes| nodes <= more.len());
@@ -134,7 +161,7 @@ impl<R: BufRead> File<R> {
             self.grid.offsets.push(self.grid.connectivity.len() as i64);
             rest = &more[nodes..];
         }
-        Ok(())
+        self.compare("cells (CELLS)", count, self.grid.offsets.len())
     }
 
     /// The type in a line `NAME type`.
@@ -147,36 +174,38 @@ impl<R: BufRead> File<R> {
     }
 
     fn attribute(&mut self, name: &str, kind: &str, components: u64) -> Result<(), Flaw> {
-        let (count, of_cells) = match self.values_of {
-            Some(Support::Cells(count)) => (count, true),
-            Some(Support::Points(count)) => (count, false),
-            None => return Err(unexpected(&self.scanner, "CELL_DATA or POINT_DATA before values", name)),
+        let Some(support) = self.values_of else {
+            return Err(unexpected(&self.scanner, "CELL_DATA or POINT_DATA before values", name));
         };
-        let wanted = of_cells && components == 1 && (ENTITY_ARRAYS.contains(&name) || GROUP_ARRAYS.contains(&name));
-        let values = self.array(kind, count.saturating_mul(components), true)?.whole();
-        if wanted {
-            self.grid.arrays.insert(name.to_owned(), values);
+        let (Support::Cells(count) | Support::Points(count)) = support;
+        let values = self.array(kind, count.saturating_mul(components), false)?;
+        if matches!(support, Support::Cells(_)) && components == 1 {
+            self.grid.take(name, values);
         }
         Ok(())
     }
 
     /// An array of a field: `name components tuples type`.
     fn field(&mut self) -> Result<(), Flaw> {
-        let line = self.scanner.full_line("a field's array")?;
-        if line == "METADATA" {
+        let mut line = self.scanner.full_line("a field's array")?;
+        while line == "METADATA" {
             self.scanner.skip_paragraph()?;
-            return self.field();
+            line = self.scanner.full_line("a field's array")?;
         }
         let [name, components, tuples, kind] = line.split_whitespace().collect::<Vec<_>>()[..] else {
             return Err(unexpected(&self.scanner, "an array's name, components, tuples and type", &line));
         };
         let (components, tuples) = (self.count(components)?, self.count(tuples)?);
-        let values = self.array(kind, components.saturating_mul(tuples), true)?.whole();
-        let of_cells = self.values_of == Some(Support::Cells(tuples)) && components == 1;
-        if of_cells && (ENTITY_ARRAYS.contains(&name) || GROUP_ARRAYS.contains(&name)) {
-            self.grid.arrays.insert(name.to_owned(), values);
+        let values = self.array(kind, components.saturating_mul(tuples), false)?;
+        if matches!(self.values_of, Some(Support::Cells(_))) && components == 1 {
+            self.grid.take(name, values);
         }
         Ok(())
+    }
+
+    /// The whole numbers that follow the present line.
+    fn whole(&mut self, kind: &str, count: u64) -> Result<Vec<i64>, Flaw> {
+        Ok(self.array(kind, count, true)?.whole().unwrap_or_default()) // read as whole numbers, they are
     }
 
     /// The values that follow the present line.
@@ -207,7 +236,7 @@ impl<R: BufRead> File<R> {
         for start in (0..count).step_by(PIECE) {
             bytes.resize(number.width() * PIECE.min(count - start), 0);
             self.scanner.fill(&mut bytes, what)?;
-            number.decode(&bytes, true, &mut values);
+            number.decode(&bytes, true, &mut values).map_err(|fault| self.flaw(fault))?;
         }
         Ok(values)
     }

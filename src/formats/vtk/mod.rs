@@ -24,9 +24,9 @@ pub(super) static VTU: Format = Format {
             notes: "text, base64, appended raw and base64; zlib, LZ4, LZMA; Lagrange cells, pyramids of P1 only",
             ..HOLDS
         },
-        read: |input, _| {
+        read: |input, options| {
             let path = input.path;
-            xml::read(&input.whole()?).map_err(|flaw| flaw.of(path))
+            xml::read(&input.whole()?, options.memory()).map_err(|flaw| flaw.of(path))
         },
     },
     writer: Some(Writer {

@@ -10,20 +10,34 @@ use quick_xml::events::{BytesStart, Event};
 use super::array::{Number, Values};
 use super::compressed::Compressor;
 use super::fault::VtkFault;
-use super::grid::{ENTITY_ARRAYS, GROUP_ARRAYS, Grid};
+use super::grid::Grid;
 use crate::formats::error::{Fault, Flaw, Place};
 use crate::mesh::Mesh;
 
-/// Reads a mesh from a file's whole content.
+/// Reads a mesh from a file's whole content; its arrays may take `memory` bytes.
 ///
 /// # Errors
 /// The first [`Fault`] and its place.
-pub(super) fn read(content: &[u8]) -> Result<Mesh, Flaw> {
+pub(super) fn read(content: &[u8], memory: u64) -> Result<Mesh, Flaw> {
     let (head, appended) = split(content)?;
-    let mut file = File { appended, ..File::default() };
+    let room = ROOM.saturating_add((content.len() as u64).saturating_mul(EXPANSION)).min(memory);
+    let mut file = File { appended, room, ..File::default() };
     file.parse(head)?;
+    // The tag of the appended data stands within the outermost element.
+    let open = usize::from(head.len() < content.len());
+    if file.open.len() > open {
+        return Err(file.flaw(Fault::Truncated("the XML")));
+    }
     file.grid.mesh().map_err(|fault| Flaw::new(Place::Byte(0), fault))
 }
+
+/// Bytes that the numbers of a file may take in memory, as 8 each, and how many more for each byte of the file: compressed arrays
+/// of meshes expand by far less, and an array of zeros by a thousand.
+const ROOM: u64 = 64 << 20;
+const EXPANSION: u64 = 100;
+
+/// The most nodes that a cell has that is read.
+const MOST_NODES: u64 = 125;
 
 /// The XML, and the appended data behind the underscore. Raw ones are no XML, and hide it from a parser.
 fn split(content: &[u8]) -> Result<(&[u8], Appended<'_>), Flaw> {
@@ -62,10 +76,31 @@ struct Array {
     section: String,
     name: String,
     number: Number,
-    components: usize,
+    components: u64,
     form: Form,
     offset: usize,
     text: Vec<u8>,
+}
+
+/// A piece as its tag tells of it, and what the pieces before it have.
+#[derive(Debug, Default)]
+struct Piece {
+    points: Option<u64>,
+    cells: Option<u64>,
+    points_before: usize,
+    nodes_before: usize,
+    cells_before: usize,
+}
+
+impl Piece {
+    /// The most numbers that an array of the piece can have, where the counts tell.
+    fn most(&self, array: &Array) -> Option<u64> {
+        match (array.section.as_str(), array.name.as_str()) {
+            ("Points", _) => self.points?.checked_mul(3),
+            ("Cells", "connectivity") => self.cells?.checked_mul(MOST_NODES),
+            _ => self.cells,
+        }
+    }
 }
 
 #[derive(Default)]
@@ -75,8 +110,9 @@ struct File<'a> {
     long_headers: bool,
     compressor: Option<Compressor>,
     grid: Grid,
-    /// Points of the pieces before the present one.
-    before: i64,
+    piece: Piece,
+    /// Bytes that numbers may still take.
+    room: u64,
     /// Names of the open elements.
     open: Vec<String>,
     /// The array whose element is open.
@@ -92,7 +128,6 @@ impl File<'_> {
 
     fn parse(&mut self, head: &[u8]) -> Result<(), Flaw> {
         let mut reader = Reader::from_reader(head);
-        reader.config_mut().check_end_names = false;
         loop {
             self.place = reader.buffer_position();
             let event = reader.read_event().map_err(|error| self.flaw(VtkFault::Xml(error.to_string())))?;
@@ -103,7 +138,12 @@ impl File<'_> {
                 }
                 Event::Empty(start) => {
                     self.start(&start)?;
-                    self.end_array()?;
+                    // What is empty within an array, such as an InformationKey, does not end it.
+                    match start.local_name().as_ref().as_bytes() {
+                        b"DataArray" => self.end_array()?,
+                        b"Piece" => self.end_piece()?,
+                        _ => {}
+                    }
                 }
                 Event::Text(text) => {
                     // Text within an InformationKey of an array is none of its values.
@@ -117,7 +157,7 @@ impl File<'_> {
                     self.open.pop();
                     match end.local_name().as_ref().as_bytes() {
                         b"DataArray" => self.end_array()?,
-                        b"Piece" => self.before = (self.grid.points.len() / 3) as i64,
+                        b"Piece" => self.end_piece()?,
                         _ => {}
                     }
                 }
@@ -144,12 +184,28 @@ impl File<'_> {
                     self.compressor = Some(known.map_err(|fault| self.flaw(fault))?);
                 }
             }
+            b"Piece" => {
+                let count = |name: &str| -> Result<Option<u64>, Flaw> {
+                    let Some(word) = text(name) else { return Ok(None) };
+                    let found = || word.chars().take(40).collect();
+                    let count = word.trim().parse();
+                    count.map(Some).map_err(|_| self.flaw(Fault::Number { what: "a piece's count", found: found() }))
+                };
+                self.piece = Piece {
+                    points: count("NumberOfPoints")?,
+                    cells: count("NumberOfCells")?,
+                    points_before: self.grid.points.len() / 3,
+                    nodes_before: self.grid.connectivity.len(),
+                    cells_before: self.grid.types.len(),
+                };
+            }
             b"DataArray" => {
                 let kind = text("type").unwrap_or_default();
                 let number = Number::of(&kind);
                 let section = self.open.last().cloned().unwrap_or_default();
                 let name = text("Name").unwrap_or_default();
-                if !wanted(&section, &name) {
+                let components = text("NumberOfComponents").and_then(|word| word.trim().parse().ok()).unwrap_or(1);
+                if !wanted(&section, &name, components) {
                     return Ok(());
                 }
                 let Some(number) = number else {
@@ -159,7 +215,7 @@ impl File<'_> {
                     section,
                     name,
                     number,
-                    components: text("NumberOfComponents").and_then(|word| word.parse().ok()).unwrap_or(1),
+                    components,
                     form: match text("format").as_deref() {
                         Some("appended") => Form::Appended,
                         Some("binary") => Form::Inline,
@@ -179,6 +235,7 @@ impl File<'_> {
         let Some(array) = self.array.take() else { return Ok(()) };
         let values = self.values(&array)?;
         let grid = &mut self.grid;
+        let whole = |values: Values| values.whole().unwrap_or_default(); // read as whole numbers, they are
         match (array.section.as_str(), array.name.as_str()) {
             ("Points", _) => {
                 if array.components != 3 {
@@ -189,21 +246,39 @@ impl File<'_> {
                 grid.points.extend(values.real());
             }
             ("Cells", "connectivity") => {
-                let before = self.before;
-                grid.connectivity.extend(values.whole().into_iter().map(|n| n.saturating_add(before)));
+                let before = self.piece.points_before as i64;
+                grid.connectivity.extend(whole(values).into_iter().map(|n| n.saturating_add(before)));
             }
             ("Cells", "offsets") => {
-                let before = grid.offsets.last().copied().unwrap_or(0);
-                grid.offsets.extend(values.whole().into_iter().map(|n| n.saturating_add(before)));
+                let before = self.piece.nodes_before as i64;
+                grid.offsets.extend(whole(values).into_iter().map(|n| n.saturating_add(before)));
             }
-            ("Cells", "types") => grid.types.extend(values.whole()),
-            _ => grid.arrays.entry(array.name).or_default().extend(values.whole()),
+            ("Cells", "types") => grid.types.extend(whole(values)),
+            _ => grid.take(&array.name, values),
         }
         Ok(())
     }
 
-    fn values(&self, array: &Array) -> Result<Values, Flaw> {
-        let mut values = if array.section == "Points" { Values::Real(Vec::new()) } else { Values::Whole(Vec::new()) };
+    /// Holds the counts of the piece that ends against what it has.
+    fn end_piece(&mut self) -> Result<(), Flaw> {
+        let Piece { points, cells, points_before, nodes_before, cells_before } = std::mem::take(&mut self.piece);
+        let grid = &self.grid;
+        let compare = |what, announced: Option<u64>, found: usize| match announced {
+            Some(announced) if announced != found as u64 => {
+                Err(self.flaw(Fault::Miscounted { what, announced, found: found as u64 }))
+            }
+            _ => Ok(()),
+        };
+        compare("points of a piece", points, grid.points.len() / 3 - points_before)?;
+        compare("cells of a piece", cells, grid.types.len() - cells_before)?;
+        compare("ends of cells of a piece", cells, grid.offsets.len().saturating_sub(cells_before))?;
+        let nodes = grid.offsets[cells_before.min(grid.offsets.len())..].last().map_or(nodes_before as i64, |&end| end);
+        compare("nodes of cells of a piece", u64::try_from(nodes).ok(), grid.connectivity.len())
+    }
+
+    fn values(&mut self, array: &Array) -> Result<Values, Flaw> {
+        // An array that may be of use may also hold what is not whole; it is of none then.
+        let mut values = if array.section == "Cells" { Values::Whole(Vec::new()) } else { Values::Real(Vec::new()) };
         if array.form == Form::Text {
             let text = std::str::from_utf8(&array.text).map_err(|_| self.flaw(Fault::NotUtf8("an array")))?;
             for word in text.split_ascii_whitespace() {
@@ -219,13 +294,21 @@ impl File<'_> {
             _ => (array.text.trim_ascii(), false, Place::Byte(self.place)),
         };
         let mut source = Source { bytes, raw };
-        let decoded = self.content(&mut source).map_err(|fault| Flaw::new(place, fault))?;
-        array.number.decode(&decoded, self.big_endian, &mut values);
+        let width = array.number.width() as u64;
+        let room = self.room / 8 * width;
+        let limit = self.piece.most(array).map_or(room, |most| most.saturating_mul(width).min(room));
+        let decoded = self.content(&mut source, limit).map_err(|fault| Flaw::new(place.clone(), fault))?;
+        if array.form == Form::Inline && !source.bytes.is_empty() {
+            return Err(Flaw::new(place, VtkFault::Leftover(source.bytes.len())));
+        }
+        let decoded = array.number.decode(&decoded, self.big_endian, &mut values);
+        decoded.map_err(|fault| Flaw::new(place, fault))?;
+        self.room = self.room.saturating_sub(8 * values.len() as u64);
         Ok(values)
     }
 
-    /// The bytes of an array behind their header.
-    fn content<'s>(&self, source: &mut Source<'s>) -> Result<Cow<'s, [u8]>, Fault> {
+    /// The bytes of an array behind their header; `limit` of them at most where they are compressed.
+    fn content<'s>(&self, source: &mut Source<'s>, limit: u64) -> Result<Cow<'s, [u8]>, Fault> {
         let width = if self.long_headers { 8 } else { 4 };
         let Some(compressor) = self.compressor else {
             return source.counted(width, |header| self.number(header));
@@ -239,6 +322,11 @@ impl File<'_> {
         let sizes: Vec<u64> = header.chunks_exact(width).skip(3).map(|bytes| self.number(bytes)).collect();
         let all = sizes.iter().try_fold(0_u64, |sum, &size| sum.checked_add(size));
         let all = all.and_then(|all| usize::try_from(all).ok()).ok_or(Fault::Truncated("a compressed array"))?;
+        // What the header says is the limit of what is expanded.
+        let announced = blocks.saturating_sub(u64::from(last > 0)).saturating_mul(size).saturating_add(last);
+        if announced > limit {
+            return Err(VtkFault::Expanded { announced, limit }.into());
+        }
         let blocks = source.take(all)?;
         let mut rest = &blocks[..];
         let mut content = Vec::new();
@@ -266,11 +354,11 @@ impl File<'_> {
 }
 
 /// Whether an array is of use.
-fn wanted(section: &str, name: &str) -> bool {
+fn wanted(section: &str, name: &str, components: u64) -> bool {
     match section {
         "Points" => true,
         "Cells" => matches!(name, "connectivity" | "offsets" | "types"),
-        "CellData" => ENTITY_ARRAYS.contains(&name) || GROUP_ARRAYS.contains(&name),
+        "CellData" => components == 1 && Grid::wants(name),
         _ => false,
     }
 }
