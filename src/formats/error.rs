@@ -57,6 +57,8 @@ pub enum Place {
     Byte(u64),
     /// A node of a CGNS file, by its path.
     Node(String),
+    /// An element, by its number.
+    Element(u64),
 }
 
 impl fmt::Display for Place {
@@ -65,6 +67,7 @@ impl fmt::Display for Place {
             Place::Line(line) => write!(f, "line {line}"),
             Place::Byte(offset) => write!(f, "byte {offset}"),
             Place::Node(path) => write!(f, "node {path}"),
+            Place::Element(tag) => write!(f, "element {tag}"),
         }
     }
 }
@@ -108,6 +111,14 @@ pub enum Fault {
     Count { what: &'static str, count: u64, rest: u64 },
     #[error("the file announces {announced} {what}, but has {found}: it is damaged")]
     Miscounted { what: &'static str, announced: u64, found: u64 },
+    #[error("{0} does not take one line: a number is missing or too many")]
+    Row(&'static str),
+    #[error("{0} bytes follow that belong to nothing: a count is wrong, or the file is damaged")]
+    Leftover(u64),
+    #[error("the number stands twice among the elements of one dimension; renumber the elements")]
+    RepeatedElement,
+    #[error("has the same corners as element {0}: the element is there twice; remove one of them")]
+    Doubled(u64),
     #[error("{0} is not UTF-8 text: the file is damaged, or in another encoding")]
     NotUtf8(&'static str),
     #[error("node {0}: a coordinate or parameter is not a finite number; correct it in the mesh generator")]

@@ -142,6 +142,29 @@ impl<R: BufRead> Numbers<R> {
         }
     }
 
+    /// The whole numbers up to the end of the present record or of the file, `most` at most; whether these are all. In text what is
+    /// no whole number ends them.
+    pub(super) fn whole_rest(&mut self, most: usize, values: &mut Vec<i64>) -> Result<bool, Flaw> {
+        let Encoding::Bytes(layout) = self.encoding else {
+            while self.more()? {
+                match self.scanner.word("a number")?.parse() {
+                    Ok(value) if values.len() < most => values.push(value),
+                    _ => return Ok(false),
+                }
+            }
+            return Ok(true);
+        };
+        let end = match self.record {
+            Some((length, before)) => length.saturating_sub(before - self.rest()).min(self.rest()),
+            None => self.rest(),
+        };
+        let count = usize::try_from(end / layout.int_width()).unwrap_or(usize::MAX);
+        for _ in 0..count.min(most) {
+            values.push(self.int("a number")?);
+        }
+        Ok(count <= most && end.is_multiple_of(layout.int_width()))
+    }
+
     /// Whether another word follows.
     pub(super) fn more(&mut self) -> Result<bool, Flaw> {
         Ok(self.repeated.0 > 0 || self.scanner.more()?)

@@ -3,6 +3,7 @@
 use std::io::BufRead;
 
 use crate::formats::error::{Fault, Flaw, Place};
+use crate::formats::names;
 
 /// Longest line that is read as text: names may be long, but not without end.
 const LONGEST_LINE: usize = 1 << 16;
@@ -16,6 +17,8 @@ pub(super) struct Scanner<R> {
     offset: u64,
     line: u64,
     word: Vec<u8>,
+    /// The line of the word that was taken last; 0 before the first.
+    word_line: u64,
     /// Whether places are given as byte offsets.
     pub(super) binary: bool,
 }
@@ -23,12 +26,17 @@ pub(super) struct Scanner<R> {
 impl<R: BufRead> Scanner<R> {
     /// A scanner of input of a known length.
     pub(super) fn new(input: R, length: u64) -> Scanner<R> {
-        Scanner { input, length, offset: 0, line: 1, word: Vec::new(), binary: false }
+        Scanner { input, length, offset: 0, line: 1, word: Vec::new(), word_line: 0, binary: false }
     }
 
     /// Where the scanner stands.
     pub(super) fn place(&self) -> Place {
         if self.binary { Place::Byte(self.offset) } else { Place::Line(self.line) }
+    }
+
+    /// The line it stands in, counted from 1.
+    pub(super) fn line_number(&self) -> u64 {
+        self.line
     }
 
     /// Bytes not yet read.
@@ -73,10 +81,7 @@ impl<R: BufRead> Scanner<R> {
         if self.word.is_empty() {
             return Ok(None);
         }
-        match std::str::from_utf8(&self.word) {
-            Ok(text) => Ok(Some(text.trim_end().to_owned())),
-            Err(_) => Err(self.flaw(Fault::NotUtf8(what))),
-        }
+        Ok(Some(names::text(&self.word).trim_end().to_owned()))
     }
 
     /// The next line that is not empty, where the file may not end.
@@ -115,11 +120,36 @@ impl<R: BufRead> Scanner<R> {
                 self.word.push(byte);
             }
         }
+        self.word_line = self.line;
         if self.word.is_empty() {
             return Err(self.flaw(Fault::Truncated(what)));
         }
         let place = self.place();
         std::str::from_utf8(&self.word).map_err(|_| Flaw::new(place, Fault::NotUtf8(what)))
+    }
+
+    /// Goes to the next word, which must be the first of its line; the line.
+    pub(super) fn begin_row(&mut self, what: &'static str) -> Result<u64, Flaw> {
+        let follows = self.more()?;
+        if follows && self.word_line == self.line {
+            return Err(self.flaw(Fault::Row(what)));
+        }
+        Ok(self.line)
+    }
+
+    /// Refuses a row of numbers that has taken more than the line it began in, or that leaves some of it.
+    pub(super) fn end_row(&mut self, begun: u64, what: &'static str) -> Result<(), Flaw> {
+        if self.word_line != begun {
+            return Err(Flaw::new(Place::Line(begun), Fault::Row(what)));
+        }
+        while let Some(byte) = self.peek()? {
+            match byte {
+                b'\n' => break,
+                _ if byte.is_ascii_whitespace() => self.step(byte),
+                _ => return Err(self.flaw(Fault::Row(what))),
+            }
+        }
+        Ok(())
     }
 
     /// Whether a word follows; white space before it is passed over.

@@ -76,11 +76,12 @@ impl Draft {
             Keyword::Unused(word) => {
                 self.unused.push((word, source.count(word, 1, 0)?));
                 source.pass_over();
+                return Ok(());
             }
             Keyword::Refused(word) => return Err(source.flaw(GmfFault::Elements(word))),
             Keyword::End => {}
         }
-        Ok(())
+        source.end_keyword()
     }
 
     fn vertices(&mut self, source: &mut Source<impl BufRead>) -> Result<(), Flaw> {

@@ -139,6 +139,16 @@ impl<R: BufRead> Source<R> {
         }
     }
 
+    /// Refuses what is left of a keyword's content: it must end where its rows do.
+    pub(super) fn end_keyword(&self) -> Result<(), Flaw> {
+        match self.form {
+            Form::Bytes(Layout { end, .. }) if self.position() < end => {
+                Err(self.flaw(Fault::Leftover(end - self.position())))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Leaves the rest of a keyword's content unread.
     pub(super) fn pass_over(&mut self) {
         if let Form::Text { complete } = &mut self.form {

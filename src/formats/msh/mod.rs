@@ -28,7 +28,7 @@ use fault::MshFault;
 use sink::{ByteSink, Sink, TextSink};
 use source::{Bytes, Text};
 
-use super::detect::Verdict;
+use super::detect::{Head, Verdict};
 use super::error::{Fault, Flaw};
 use super::format::{Format, Holds, Reader, Writer};
 use super::part::Unwritten;
@@ -43,11 +43,7 @@ pub use type_code::of as element_type;
 pub(super) static FORMAT: Format = Format {
     name: "Gmsh MSH",
     endings: &["msh"],
-    // Nastran's comments begin with a dollar too.
-    detect: |head| match head.text {
-        [b'$', b'A'..=b'Z', ..] => Verdict::ByContent,
-        _ => Verdict::No,
-    },
+    detect,
     reader: Reader {
         holds: Holds { notes: "4.1 and 2.2, text and binary", ..HOLDS },
         read: |input, _| read(input.content, input.length).map_err(|flaw| flaw.of(input.path)),
@@ -60,6 +56,16 @@ pub(super) static FORMAT: Format = Format {
 
 const HOLDS: Holds =
     Holds { highest: Order::MAX, cells: &Cell::ALL, dimensions: &[2, 3], names: true, fields: false, notes: "" };
+
+/// Whether a file begins with a section; Nastran's comments begin with a dollar too.
+fn detect(head: &Head) -> Verdict {
+    const FIRST: [&str; 3] = ["MeshFormat", "Comments", "NOD"];
+    let lines = head.lines();
+    let name = lines.first().and_then(|line| line.strip_prefix('$')).unwrap_or_default();
+    let begins = FIRST.contains(&name) || SECTIONS.contains(&name);
+    let holds = !name.is_empty() && lines.iter().any(|line| line == "$MeshFormat");
+    if begins || holds { Verdict::ByContent } else { Verdict::No }
+}
 
 /// Reads a mesh from an MSH file's content of `length` bytes.
 ///

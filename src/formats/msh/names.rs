@@ -3,6 +3,8 @@
 use std::io::{BufRead, Write};
 
 use crate::formats::error::{Fault, Flaw};
+use crate::formats::names::is_plain;
+use crate::formats::output::Unwritten;
 use crate::formats::scanner::Scanner;
 use crate::mesh::PhysicalName;
 
@@ -37,13 +39,20 @@ fn parse(line: &str) -> Option<PhysicalName> {
 }
 
 /// Writes the section, where there are names.
-pub(super) fn write(out: &mut impl Write, names: &[PhysicalName]) -> std::io::Result<()> {
+///
+/// # Errors
+/// [`Unwritten::Inexpressible`] for a name with a line break or a quotation mark, for which the format has no other form.
+pub(super) fn write(out: &mut impl Write, names: &[PhysicalName]) -> Result<(), Unwritten> {
     if names.is_empty() {
         return Ok(());
+    }
+    if let Some(PhysicalName { name, .. }) = names.iter().find(|own| !own.name.chars().all(is_plain)) {
+        let reason = format!("the name {name:?} of a group has a line break or a quotation mark; rename the group");
+        return Err(Unwritten::Inexpressible(reason));
     }
     writeln!(out, "$PhysicalNames\n{}", names.len())?;
     for PhysicalName { dimension, tag, name } in names {
         writeln!(out, "{dimension} {tag} \"{name}\"")?;
     }
-    writeln!(out, "$EndPhysicalNames")
+    Ok(writeln!(out, "$EndPhysicalNames")?)
 }

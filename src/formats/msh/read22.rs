@@ -30,10 +30,12 @@ pub(super) fn count<R: BufRead>(scanner: &mut Scanner<R>, what: &'static str, bi
 pub(super) fn nodes(source: &mut impl Source, draft: &mut Draft, count: u64, parametric: bool) -> Result<(), Flaw> {
     let count = source.checked(count, "nodes", Record { ints: 1, sizes: 0, reals: 3 })?;
     for _ in 0..count {
+        let row = source.begin_row("a node")?;
         let tag = number(source, "a node number")?;
         let point = source.reals::<3>("a node's coordinates")?;
         if !parametric {
             draft.push_node(source, tag, point, None)?;
+            source.end_row(row, "a node")?;
             continue;
         }
         let entity = EntityKey::new(dimension(source)?, source.int("an entity tag")?);
@@ -46,6 +48,7 @@ pub(super) fn nodes(source: &mut impl Source, draft: &mut Draft, count: u64, par
         if given > 0 {
             draft.push_parameters(source, id, uv)?;
         }
+        source.end_row(row, "a node")?;
     }
     draft.end_nodes(source)
 }
@@ -70,11 +73,14 @@ pub(super) fn elements_text(source: &mut impl Source, draft: &mut Draft, count: 
     let count = source.checked(count, "elements", Record { ints: 4, ..Record::default() })?;
     let mut elements = Elements { draft, numbers: Vec::new(), nodes: Vec::new() };
     for _ in 0..count {
+        let row = source.begin_row("an element")?;
         let tag = number(source, "an element number")?;
         let code = source.int("an element type")?;
         let tag_count = source.int("the number of tags")?;
         let kind = elements.draft.element_type(source, code)?;
         let [physical, entity] = tags(source, tag_count)?;
+        elements.read_nodes(source, kind)?;
+        source.end_row(row, "an element")?; // before the nodes are looked up: what is wrong with the line is the cause
         elements.push(source, &Head { tag, kind, physical, entity })?;
     }
     elements.finish();
@@ -97,6 +103,7 @@ pub(super) fn elements_binary(source: &mut impl Source, draft: &mut Draft, count
         for _ in 0..run {
             let tag = number(source, "an element number")?;
             let [physical, entity] = tags(source, tag_count)?;
+            elements.read_nodes(source, kind)?;
             elements.push(source, &Head { tag, kind, physical, entity })?;
         }
     }
@@ -118,11 +125,17 @@ fn tags(source: &mut impl Source, count: i32) -> Result<[i32; 2], Flaw> {
 }
 
 impl Elements<'_> {
-    fn push(&mut self, source: &mut impl Source, head: &Head) -> Result<(), Flaw> {
+    /// Takes the numbers of an element's nodes.
+    fn read_nodes(&mut self, source: &mut impl Source, kind: ElementType) -> Result<(), Flaw> {
         self.numbers.clear();
-        for _ in 0..head.kind.node_count() {
+        for _ in 0..kind.node_count() {
             self.numbers.push(number(source, "an element's nodes")?);
         }
+        Ok(())
+    }
+
+    /// Adds the element whose nodes were read last.
+    fn push(&mut self, source: &mut impl Source, head: &Head) -> Result<(), Flaw> {
         self.nodes.clear();
         self.draft.push_element(source, head.kind, head.tag, &self.numbers, &mut self.nodes)?;
         if self.joins_last(head) {
@@ -232,7 +245,9 @@ pub(super) fn periodic<R: BufRead>(scanner: &mut Scanner<R>, draft: &mut Draft) 
         let count = source.checked(count, "periodic nodes", Record { sizes: 2, ..Record::default() })?;
         let mut pairs = Vec::with_capacity(count);
         for _ in 0..count {
+            let row = source.begin_row("a pair of nodes")?;
             let pair = [source.size("periodic nodes")?, source.size("periodic nodes")?];
+            source.end_row(row, "a pair of nodes")?;
             pairs.push(periodic_pair(&source, draft, slave, pair)?);
         }
         draft.parts.periodic.push(Periodic { slave, master, affine, pairs });

@@ -22,8 +22,10 @@ fn entity_key(source: &mut impl Source) -> Result<EntityKey, Flaw> {
 pub(super) fn entities(source: &mut impl Source, draft: &mut Draft) -> Result<(), Flaw> {
     for (dimension, count) in entity_counts(source)? {
         for _ in 0..count {
+            let row = source.begin_row("an entity")?;
             let tag = source.int("an entity tag")?;
             let entity = entity_body(source, EntityKey::new(dimension, tag))?;
+            source.end_row(row, "an entity")?;
             draft.parts.entities.push(entity);
         }
     }
@@ -93,6 +95,7 @@ pub(super) fn nodes(source: &mut impl Source, draft: &mut Draft) -> Result<(), F
         }
         let entity = draft.parent(key);
         for &tag in &tags {
+            let row = source.begin_row("a node's coordinates")?;
             let point = source.reals::<3>("a node's coordinates")?;
             let id = draft.push_node(source, tag, point, Some(entity))?;
             if parametric {
@@ -105,6 +108,7 @@ pub(super) fn nodes(source: &mut impl Source, draft: &mut Draft) -> Result<(), F
                     draft.push_parameters(source, id, [parameters[0], parameters[1]])?;
                 }
             }
+            source.end_row(row, "a node's coordinates")?;
         }
     }
     let found = draft.parts.points.len() as u64;
@@ -141,10 +145,12 @@ pub(super) fn elements(source: &mut impl Source, draft: &mut Draft) -> Result<()
         block.nodes.reserve_exact(count * node_count);
         let mut numbers = vec![0; node_count];
         for _ in 0..count {
+            let row = source.begin_row("an element")?;
             let tag = source.size("an element number")?;
             for number in &mut numbers {
                 *number = source.size("an element's nodes")?;
             }
+            source.end_row(row, "an element")?;
             block.tags.push(tag);
             draft.push_element(source, kind, tag, &numbers, &mut block.nodes)?;
         }
@@ -169,7 +175,9 @@ pub(super) fn periodic(source: &mut impl Source, draft: &mut Draft) -> Result<()
         let count = source.count("periodic nodes", Record { sizes: 2, ..Record::default() })?;
         let mut pairs = Vec::with_capacity(count);
         for _ in 0..count {
+            let row = source.begin_row("a pair of nodes")?;
             let pair = [source.size("periodic nodes")?, source.size("periodic nodes")?];
+            source.end_row(row, "a pair of nodes")?;
             pairs.push(periodic_pair(source, draft, slave, pair)?);
         }
         let master = draft.parent(EntityKey::new(slave.dimension, master)).tag;

@@ -31,6 +31,11 @@ pub(super) trait Source {
     /// Bytes not yet read, and the least bytes that a record takes.
     fn room(&self, record: Record) -> (u64, u64);
 
+    /// Goes to the beginning of a record that has a line of its own where numbers are words; what [`Source::end_row`] wants.
+    fn begin_row(&mut self, what: &'static str) -> Result<u64, Flaw>;
+    /// Refuses a record that was not the whole of its line.
+    fn end_row(&mut self, begun: u64, what: &'static str) -> Result<(), Flaw>;
+
     /// Refuses a count of records that the rest of the file cannot hold, so that it may be allocated for.
     fn checked(&self, count: u64, what: &'static str, record: Record) -> Result<usize, Flaw> {
         let (rest, least) = self.room(record);
@@ -79,6 +84,12 @@ impl<R: BufRead> Source for Text<'_, R> {
     fn flaw(&self, fault: impl Into<Fault>) -> Flaw {
         self.0.flaw(fault)
     }
+    fn begin_row(&mut self, what: &'static str) -> Result<u64, Flaw> {
+        self.0.begin_row(what)
+    }
+    fn end_row(&mut self, begun: u64, what: &'static str) -> Result<(), Flaw> {
+        self.0.end_row(begun, what)
+    }
     fn room(&self, record: Record) -> (u64, u64) {
         (self.0.rest(), 2 * (record.ints + record.sizes + record.reals))
     }
@@ -112,6 +123,12 @@ impl<R: BufRead> Source for Bytes<'_, R> {
     }
     fn flaw(&self, fault: impl Into<Fault>) -> Flaw {
         self.scanner.flaw(fault)
+    }
+    fn begin_row(&mut self, _: &'static str) -> Result<u64, Flaw> {
+        Ok(0)
+    }
+    fn end_row(&mut self, _: u64, _: &'static str) -> Result<(), Flaw> {
+        Ok(())
     }
     fn room(&self, record: Record) -> (u64, u64) {
         (self.scanner.rest(), 4 * record.ints + 8 * (record.sizes + record.reals))

@@ -33,7 +33,8 @@ pub(super) fn encoding(path: &Path, head: &[u8], length: u64) -> Result<Encoding
         if holds(&named) {
             return Ok(named);
         }
-        let other = fitting(head, length).map_or("a file that is cut off".to_owned(), word_of);
+        let other = fitting(head, length);
+        let other = if other.is_empty() { "a file that is cut off".to_owned() } else { words(&other) };
         return Err(format!(
             "its name says {word}, but its counts do not fit its {length} bytes: it looks like {other}"
         ));
@@ -41,11 +42,24 @@ pub(super) fn encoding(path: &Path, head: &[u8], length: u64) -> Result<Encoding
     if text(head) {
         return Ok(Encoding::Text);
     }
-    fitting(head, length).map(Encoding::Bytes).ok_or_else(|| {
-        "the counts of a UGRID file do not fit its length in any byte order or width: it is cut off or damaged; \
-         name it by its kind, as case.lb8.ugrid"
-            .to_owned()
-    })
+    match fitting(head, length)[..] {
+        [only] => Ok(Encoding::Bytes(only)),
+        [] => Err(
+            "the counts of a UGRID file do not fit its length in any byte order or width: it is cut off or damaged; \
+             name it by its kind, as case.lb8.ugrid"
+                .to_owned(),
+        ),
+        ref several => Err(format!(
+            "the counts of a UGRID file fit its length as {}; name it by its kind, as case.lb8.ugrid",
+            words(several)
+        )),
+    }
+}
+
+/// The words that name layouts, as a choice.
+fn words(layouts: &[Layout]) -> String {
+    let words: Vec<String> = layouts.iter().map(|&layout| word_of(layout)).collect();
+    words.join(" or ")
 }
 
 fn named(word: &str, long: bool) -> Option<Encoding> {
@@ -73,8 +87,8 @@ fn text(head: &[u8]) -> bool {
     head.iter().all(|byte| byte.is_ascii_digit() || byte.is_ascii_whitespace() || b"+-.eEdD".contains(byte))
 }
 
-/// The layout whose size is the file's; else the first whose size is less, as writers may add to the end.
-fn fitting(head: &[u8], length: u64) -> Option<Layout> {
+/// The layouts whose size is the file's; else those whose size is less, as writers may add to the end.
+fn fitting(head: &[u8], length: u64) -> Vec<Layout> {
     let all = (0..16).map(|bits: u8| Layout {
         big_endian: bits & 1 != 0,
         short_reals: bits & 2 != 0,
@@ -82,8 +96,11 @@ fn fitting(head: &[u8], length: u64) -> Option<Layout> {
         records: bits & 8 != 0,
     });
     let sizes: Vec<(Layout, u64)> = all.filter_map(|layout| Some((layout, size(layout, head)?))).collect();
-    let exact = sizes.iter().find(|(_, size)| *size == length);
-    exact.or_else(|| sizes.iter().find(|(_, size)| *size < length)).map(|&(layout, _)| layout)
+    let of = |fits: fn(u64, u64) -> bool| -> Vec<Layout> {
+        sizes.iter().filter(|(_, size)| fits(*size, length)).map(|&(layout, _)| layout).collect()
+    };
+    let exact = of(|size, length| size == length);
+    if exact.is_empty() { of(|size, length| size < length) } else { exact }
 }
 
 /// The length of a file with the counts that the head gives in this layout; `None` where they are none.

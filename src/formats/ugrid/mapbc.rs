@@ -1,6 +1,7 @@
 //! `.mapbc` files: boundary condition and name of each surface of a UGRID mesh.
 
 use std::collections::BTreeMap;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use crate::formats::error::{Error, Fault, Flaw, Place};
@@ -22,10 +23,13 @@ pub(super) fn apply(mesh: &mut Parts, path: &Path) -> Result<(), Error> {
         return Ok(());
     };
     let failed = |source| Error::Io { file: file.clone(), action: "read", source };
-    if std::fs::metadata(&file).map_err(failed)?.len() > LARGEST {
+    let mut bytes = Vec::new();
+    let content = cad::regular::open(&file).and_then(|input| input.take(LARGEST + 1).read_to_end(&mut bytes));
+    content.map_err(failed)?;
+    if bytes.len() as u64 > LARGEST {
         return Err(Error::Format { file, reason: "far too large for a list of surfaces".into() });
     }
-    let text = String::from_utf8_lossy(&std::fs::read(&file).map_err(failed)?).into_owned();
+    let text = crate::formats::names::text(&bytes);
     if text.split_whitespace().next().is_some_and(|word| word.parse::<u64>().is_err()) {
         let name = file.display();
         mesh.notes.push(format!(

@@ -3,6 +3,7 @@
 //! The file does not say how its numbers are written; its name does (`case.lb8.ugrid`), and where it does not, the sizes
 //! tell. Names of surfaces stand in a `.mapbc` file beside it.
 
+mod fault;
 mod kind;
 pub(super) mod mapbc;
 
@@ -19,6 +20,7 @@ use super::numbers::Numbers;
 use super::options::ReadOptions;
 use crate::element::{Cell, Order};
 use crate::mesh::{EntityKey, Mesh, NodeId, Parts};
+use fault::UgridFault;
 use kind::{CELLS, FACES};
 
 /// The format of AFLR3, FUN3D and others.
@@ -72,6 +74,9 @@ fn read(numbers: &mut Numbers<impl BufRead>) -> Result<Parts, Flaw> {
     numbers.begin_record("the mesh")?;
     let [points, counts @ ..] = counts;
     let points = numbers.checked(points, "nodes", 0, 3)?;
+    if points == 0 {
+        return Err(numbers.flaw(UgridFault::NoNodes));
+    }
     let mut nodes = Vec::with_capacity(points);
     for _ in 0..points {
         let what = "a node's coordinates";
@@ -92,7 +97,7 @@ fn read(numbers: &mut Numbers<impl BufRead>) -> Result<Parts, Flaw> {
         let nodes = connectivity(numbers, points, cell, count)?;
         nodes.chunks_exact(cell.corner_count()).for_each(|nodes| assembly.push(cell, EntityKey::new(3, 1), nodes));
     }
-    // Behind the cells some writers add what is not needed here: volume numbers, layers, spacings.
+    rest(numbers, &mut assembly, points)?;
     numbers.end_record("the mesh", false)?;
     let mut surfaces: Vec<EntityKey> = assembly.parts.blocks.iter().map(|block| block.entity).collect();
     surfaces.retain(|key| key.dimension == 2);
@@ -101,6 +106,31 @@ fn read(numbers: &mut Numbers<impl BufRead>) -> Result<Parts, Flaw> {
     surfaces.into_iter().for_each(|key| assembly.entity(key, vec![key.tag]));
     Ok(assembly.complete())
 }
+
+/// Looks at what follows the cells. Some writers add what is not needed here: volume numbers, layers, spacings; that is noted.
+/// Numbers of nodes are cells that no count announces.
+fn rest(numbers: &mut Numbers<impl BufRead>, assembly: &mut Assembly, points: usize) -> Result<(), Flaw> {
+    let mut values = Vec::new();
+    let whole = numbers.whole_rest(LOOKED_AT, &mut values)?;
+    if values.is_empty() {
+        return Ok(());
+    }
+    let node = |&value: &i64| (1..=points as i64).contains(&value);
+    let are_cells = |cell: Cell| {
+        let rows = values.chunks_exact(cell.corner_count());
+        let is_row = |row: &[i64]| (1..row.len()).all(|n| !row[..n].contains(&row[n]));
+        let ends = !whole || values.len().is_multiple_of(cell.corner_count());
+        ends && rows.len() > 0 && rows.into_iter().all(is_row)
+    };
+    if values.iter().all(node) && CELLS.into_iter().any(are_cells) {
+        return Err(numbers.flaw(UgridFault::MoreCells));
+    }
+    assembly.parts.notes.push("what follows the cells (volume numbers, layers, ...) is not used".into());
+    Ok(())
+}
+
+/// Numbers behind the cells that are looked at.
+const LOOKED_AT: usize = 1 << 16;
 
 /// The number of the surface that a face belongs to.
 fn surface(numbers: &mut Numbers<impl BufRead>) -> Result<i32, Flaw> {
