@@ -38,7 +38,7 @@ const MESHES: &[Foreign] = &[
     Foreign {
         name: "a Fluent mesh",
         remedy: "export the mesh as CGNS",
-        is: |head| matches!(head.text, [b'(', b'0'..=b'2', b' ', ..]),
+        is: |head| matches!(head.text, [b'(', b'0'..=b'9', b' ' | b'0'..=b'9', ..]),
     },
     Foreign {
         name: "a Gambit neutral file",
@@ -49,11 +49,17 @@ const MESHES: &[Foreign] = &[
     Foreign {
         name: "a Nastran bulk data file",
         remedy: "convert it: gmsh IN.bdf -save -format msh41 -o OUT.msh",
-        is: |head| {
-            head.lines()
-                .iter()
-                .any(|line| line == "BEGIN BULK" || line.starts_with("GRID,") || line.starts_with("GRID  "))
-        },
+        is: is_nastran,
+    },
+    Foreign {
+        name: "an STL file, which holds triangles of a surface without its CAD",
+        remedy: "give a volume mesh, and the CAD as STEP or IGES",
+        is: |head| (head.text.starts_with(b"solid") && holds(head, b"facet")) || ends(head, "stl"),
+    },
+    Foreign {
+        name: "a compressed file",
+        remedy: "unpack it first",
+        is: |head| matches!(head.bytes, [0x1f, 0x8b, ..] | [b'P', b'K', 3, 4, ..] | [0xfd, b'7', b'z', b'X', b'Z', ..]),
     },
     Foreign {
         name: "an Abaqus input file",
@@ -76,6 +82,25 @@ const MESHES: &[Foreign] = &[
     },
     Foreign { name: "an XDMF file", remedy: MESHIO, is: |head| head.text.starts_with(b"<") && holds(head, b"<Xdmf") },
 ];
+
+/// Lines of numbers in fields of 8 columns, or with commas; comments begin with a dollar.
+fn is_nastran(head: &Head) -> bool {
+    const CARDS: [&str; 9] = ["GRID", "CTETRA", "CHEXA", "CPENTA", "CPYRAM", "CTRIA3", "CQUAD4", "PSOLID", "PSHELL"];
+    let lines = head.lines();
+    let card = |line: &String| {
+        let word = line.split([' ', ',', '*', '\t']).next().unwrap_or_default();
+        word.len() < line.len() && CARDS.iter().any(|card| word.eq_ignore_ascii_case(card))
+    };
+    let control = |line: &String| ["BEGIN BULK", "CEND"].iter().any(|word| line.eq_ignore_ascii_case(word));
+    let comment = lines.first().is_some_and(|line| line.starts_with('$'));
+    lines.iter().any(|line| card(line) || control(line))
+        || (comment && ["bdf", "nas", "fem"].iter().any(|name| ends(head, name)))
+}
+
+/// Whether the file's name has an ending.
+fn ends(head: &Head, ending: &str) -> bool {
+    head.path.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending))
+}
 
 /// Whether the first line begins with a word.
 fn first(head: &Head, word: &str) -> bool {

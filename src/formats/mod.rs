@@ -7,13 +7,16 @@
 mod assembly;
 #[cfg(feature = "cgns")]
 pub mod cgns;
+mod crossed;
 mod detect;
 mod error;
 mod field;
 mod foreign;
 mod format;
 mod gmf;
+mod grid_layout;
 pub mod msh;
+mod names;
 mod node_order;
 mod numbers;
 mod options;
@@ -22,6 +25,7 @@ mod part;
 mod plot3d;
 mod recognise;
 mod registry;
+mod repeats;
 mod scanner;
 mod su2;
 mod target;
@@ -32,11 +36,12 @@ mod vtk;
 use std::path::{Path, PathBuf};
 
 use format::Input;
-use recognise::detect;
+use recognise::{detect, folder};
 
 pub use error::{Error, Fault, Flaw, Place};
 pub use field::{Field, Support, Values};
 pub use format::{Format, Holds, Reader, Writer};
+pub use grid_layout::GridLayout;
 pub use options::{ReadOptions, WriteOptions};
 pub use output::{check_file, write_bytes, write_file};
 pub use part::abandon;
@@ -60,10 +65,18 @@ pub fn read(path: &Path) -> Result<Mesh, Error> {
 /// # Errors
 /// Those of [`read`].
 pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Mesh, Error> {
+    let refused = |reason| Error::Format { file: path.to_path_buf(), reason };
+    if let Some(refusal) = folder(path) {
+        return Err(refused(refusal.reason));
+    }
     let input = Input::open(path)?;
-    let format = detect(&input.head());
-    let format = format.map_err(|refusal| Error::Format { file: path.to_path_buf(), reason: refusal.reason })?;
-    (format.reader.read)(input, options)
+    let format = detect(&input.head()).map_err(|refusal| refused(refusal.reason))?;
+    options.check_length(input.length).map_err(refused)?;
+    let mut mesh = (format.reader.read)(input, options)?;
+    names::clean(&mut mesh);
+    crossed::uncross(&mut mesh);
+    repeats::check(&mut mesh).map_err(|flaw| flaw.of(path))?;
+    Ok(mesh)
 }
 
 /// Whether a file is of a mesh format by its content or name; it may be damaged, or of a format that is not read.
@@ -71,6 +84,9 @@ pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Mesh, Error> {
 /// # Errors
 /// [`Error::Io`].
 pub fn is_mesh(path: &Path) -> Result<bool, Error> {
+    if folder(path).is_some() {
+        return Ok(true);
+    }
     Ok(detect(&Input::open(path)?.head()).map_or_else(|refusal| refusal.is_mesh, |_| true))
 }
 

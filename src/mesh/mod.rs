@@ -146,6 +146,17 @@ impl Mesh {
         &self.parts.notes
     }
 
+    /// Names of groups and conditions, to be changed in place.
+    pub(crate) fn names_mut(&mut self) -> impl Iterator<Item = &mut String> {
+        let groups = self.parts.physical_names.iter_mut().map(|group| &mut group.name);
+        groups.chain(self.parts.conditions.iter_mut().map(|condition| &mut condition.name))
+    }
+
+    /// Adds a note of what reading found.
+    pub(crate) fn note(&mut self, note: String) {
+        self.parts.notes.push(note);
+    }
+
     /// The largest dimension of an element, 0 to 3: that of the mesh's cells.
     #[must_use]
     pub fn dimension(&self) -> usize {
@@ -201,6 +212,12 @@ impl Mesh {
     pub fn side_blocks(&self) -> impl Iterator<Item = &Block> + Clone {
         let own = self.dimension();
         self.parts.blocks.iter().filter(move |block| block.cell.dimension() + 1 == own)
+    }
+
+    /// Blocks of sides, to be changed in place; their nodes must be nodes of the mesh, as many as before.
+    pub(crate) fn side_blocks_mut(&mut self) -> impl Iterator<Item = &mut Block> {
+        let own = self.dimension();
+        self.parts.blocks.iter_mut().filter(move |block| block.cell.dimension() + 1 == own)
     }
 
     /// Blocks of the given dimension, with their place in the list of all.
