@@ -9,10 +9,17 @@ use std::time::Duration;
 use cad::child::{ChildError, Limits, run};
 
 use super::dump;
-use crate::formats::Error;
+use super::fault::CgnsFault;
+use crate::formats::error::{Error, Flaw, Place};
 
 /// First argument with which a program must call [`serve_reader`]; the second is the file.
 pub const READER_SUBCOMMAND: &str = "__read-cgns";
+
+/// Variable in which the parent hands the memory that reading may take (bytes) to the child.
+const ROOM_VARIABLE: &str = "SAGITTA_READER_ROOM";
+
+/// Address space of the child beside what its answer takes, in bytes: the program itself, and the library's own.
+const OWN: u64 = 1 << 30;
 
 /// Seconds that reading may take, beside one for every ten megabytes.
 const SECONDS: u64 = 60;
@@ -23,28 +30,43 @@ pub fn serve_reader(path: &Path) -> ExitCode {
     cad::child::keep_to_limits();
     let Some(out) = cad::child::take_stdout() else { return ExitCode::FAILURE };
     let length = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
-    match dump::write(path, dump::room(length), &mut BufWriter::with_capacity(1 << 20, out)) {
+    let memory = std::env::var(ROOM_VARIABLE).ok().and_then(|text| text.parse().ok()).unwrap_or(u64::MAX);
+    // Where the library crashes the parent tells at which node.
+    let visit = |node: &str| cad::child::warn(node);
+    match dump::write(path, dump::room(length, memory), &mut BufWriter::with_capacity(1 << 20, out), visit) {
         Ok(()) => ExitCode::SUCCESS,
         Err(_) => ExitCode::FAILURE,
     }
 }
 
-/// What the child says of a file of `length` bytes.
+/// What the child says of the user's file `path` of `length` bytes, which stands in `file`, where reading may take `memory` bytes.
 ///
 /// # Errors
 /// [`Error`]: also where the library crashed or hung.
-pub(super) fn ask(program: &Path, path: &Path, length: u64) -> Result<Vec<u8>, Error> {
+pub(super) fn ask(program: &Path, path: &Path, file: &Path, length: u64, memory: u64) -> Result<Vec<u8>, Error> {
     let refused = |reason: String| Error::Format { file: path.to_path_buf(), reason };
-    let limits = Limits { timeout: Duration::from_secs(SECONDS + length / 10_000_000), memory: dump::room(length) };
-    let outcome = run(program, READER_SUBCOMMAND, path, &[], limits).map_err(|error| match error {
-        ChildError::TimedOut { .. } => {
-            refused(format!("reading took longer than {} s and was ended: a malformed file", limits.timeout.as_secs()))
-        }
-        ChildError::Run(source) => {
-            let what = format!("the reading process {} cannot be run: {source}", program.display());
-            Error::Io { file: path.to_path_buf(), action: "read", source: std::io::Error::other(what) }
-        }
-    })?;
+    let room = dump::room(length, memory);
+    let limits = Limits {
+        timeout: Duration::from_secs(SECONDS + length / 10_000_000),
+        memory: OWN.saturating_add(room.saturating_mul(2)),
+        output: room.saturating_mul(2),
+    };
+    let outcome =
+        run(program, READER_SUBCOMMAND, file, &[(ROOM_VARIABLE, memory.to_string())], limits).map_err(|error| {
+            match error {
+                ChildError::TimedOut { .. } => refused(format!(
+                    "reading took longer than {} s and was ended: a malformed file",
+                    limits.timeout.as_secs()
+                )),
+                ChildError::TooMuch => {
+                    refused(format!("reading it gives more than {} MB: a malformed file", limits.output >> 20))
+                }
+                ChildError::Run(source) => {
+                    let what = format!("the reading process {} cannot be run: {source}", program.display());
+                    Error::Io { file: path.to_path_buf(), action: "read", source: std::io::Error::other(what) }
+                }
+            }
+        })?;
     if outcome.killed().is_some() {
         let what = format!("the reading process was killed ({}); {}", outcome.status, ChildError::KILLED);
         return Err(Error::Io { file: path.to_path_buf(), action: "read", source: std::io::Error::other(what) });
@@ -55,9 +77,9 @@ pub(super) fn ask(program: &Path, path: &Path, length: u64) -> Result<Vec<u8>, E
         (_, Some(6)) => {
             Err(refused(format!("reading needs more than {} MB of memory: a malformed file", limits.memory >> 20)))
         }
-        _ => Err(refused(format!(
-            "the HDF5 library failed while reading it ({}): the file is malformed",
-            outcome.status
-        ))),
+        _ => {
+            let node = outcome.warnings.last().cloned().unwrap_or_else(|| "/".to_owned());
+            Err(Flaw::new(Place::Node(node), CgnsFault::Crash(outcome.status.to_string())).of(path))
+        }
     }
 }

@@ -104,6 +104,8 @@ pub(super) struct Conditions<'a> {
     used: HashSet<EntityKey>,
     /// Patches given by vertices: the nodes of each.
     by_vertices: Vec<(usize, HashSet<NodeId>)>,
+    /// Conditions that list what is not there: their path, and how many numbers.
+    beyond: Vec<(String, u64)>,
 }
 
 impl<'a> Conditions<'a> {
@@ -116,7 +118,13 @@ impl<'a> Conditions<'a> {
             entities: BTreeMap::new(),
             used: HashSet::new(),
             by_vertices: Vec::new(),
+            beyond: Vec::new(),
         }
+    }
+
+    /// Dimension of the cells.
+    pub(super) fn dimension(&self) -> usize {
+        self.dimension.into()
     }
 
     /// For each element of a zone's sections, one after the other, the patch that covers it plus one, or 0.
@@ -130,6 +138,16 @@ impl<'a> Conditions<'a> {
             self.patches.push(self.patch(node));
             let Some((points, elements)) = points(node) else { continue };
             let values = points.values()?;
+            let known = |run: [i64; 2]| match elements {
+                true => places(&zone.sections, run).map(|places| places.len() as u64).sum(),
+                false => (run[0].max(1)..=run[1].min(nodes.len() as i64)).count() as u64,
+            };
+            let listed = |[a, b]: [i64; 2]| b.checked_sub(a).map_or(u64::MAX, |n| n.saturating_add(1).max(0) as u64);
+            let beyond: u64 =
+                values.iter().fold(0, |sum, &run| sum.saturating_add(listed(run).saturating_sub(known(run))));
+            if beyond > 0 {
+                self.beyond.push((node.path.clone(), beyond));
+            }
             if elements {
                 for places in values.into_iter().flat_map(|run| places(&zone.sections, run)) {
                     covered[places].iter_mut().filter(|at| **at == 0).for_each(|at| *at = patch as u32 + 1);
@@ -224,6 +242,12 @@ impl<'a> Conditions<'a> {
                 .parts
                 .notes
                 .push(format!("{}: has no face that is not in another condition too; left out", patch.path));
+        }
+        for (path, count) in &self.beyond {
+            let note = format!(
+                "{path}: {count} of the numbers that it lists are of no element or vertex of the zone; ignored"
+            );
+            assembly.parts.notes.push(note);
         }
         assembly.parts.physical_names.sort_by_key(|name| (name.dimension, name.tag));
     }

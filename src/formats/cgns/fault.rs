@@ -5,9 +5,15 @@
 pub(super) enum CgnsFault {
     #[error("no {label} {name} in this node")]
     Missing { label: &'static str, name: &'static str },
+    #[error("the HDF5 library cannot read it ({0}): the file is malformed")]
+    Library(String),
+    #[error("the HDF5 library failed at this node or behind it ({0}): the file is malformed")]
+    Crash(String),
     #[error("its data are not {0}: the file is damaged")]
     NotNumbers(&'static str),
-    #[error("the file has no CGNSBase_t: it is not a CGNS file, or an empty one")]
+    #[error(
+        "the file has no CGNSBase_t: it is an empty CGNS file, or one of the many other kinds of HDF5 files (MED, netCDF, Exodus, ...), which are not read"
+    )]
     NoBase,
     #[error("the base has no zone")]
     NoZone,
@@ -17,6 +23,8 @@ pub(super) enum CgnsFault {
     ZoneType(String),
     #[error("{what} has {found} values where {needed} are needed: the file is damaged")]
     Length { what: &'static str, found: usize, needed: u64 },
+    #[error("the zone counts {needed} cells, and its sections have {found}: the file is damaged")]
+    Cells { found: usize, needed: u64 },
     #[error("elements {first} to {last}: not a range of element numbers")]
     Range { first: i64, last: i64 },
     #[error("element numbers {0} belong to two sections: the file is damaged")]

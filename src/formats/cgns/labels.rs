@@ -60,6 +60,6 @@ pub(super) mod kind {
     pub(in super::super) const REAL: u8 = 9;
 }
 
-/// First bytes of an answer that holds a tree, and of one that tells why there is none.
+/// First and last bytes of an answer that holds a tree, and last bytes of one that tells why there is none.
 pub(super) const TREE: &[u8; 8] = b"cgnstree";
 pub(super) const FAILURE: &[u8; 8] = b"cgnsfail";

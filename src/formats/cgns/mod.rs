@@ -4,11 +4,13 @@
 //! turns it into plain bytes and does nothing else (`dump`): in this process, or, where [`ReadOptions::reader`] names a program,
 //! in a child (`child`). `tree` takes the bytes apart, and the mesh is made from it in safe code.
 
+mod adf;
 mod child;
 mod conditions;
 mod connections;
 mod dump;
 mod fault;
+mod kin;
 mod labels;
 mod node;
 mod read;
@@ -19,12 +21,15 @@ mod type_code;
 mod write;
 mod zone;
 
-use super::detect::{Head, Refusal, Verdict};
-use super::error::Error;
+use super::detect::{Head, Verdict};
+use super::error::{Error, Flaw, Place};
 use super::format::{Format, Holds, Input, Reader, Writer};
 use super::options::ReadOptions;
+use std::path::Path;
+
 use crate::element::{Cell, Order};
 use crate::mesh::Mesh;
+use fault::CgnsFault;
 
 pub use child::{READER_SUBCOMMAND, serve_reader};
 
@@ -36,7 +41,7 @@ pub(super) static FORMAT: Format = Format {
     reader: Reader {
         holds: Holds {
             notes: "unstructured zones; one type a section or MIXED, with or without offsets; conditions by list, range, \
-                    vertices, family; zones joined",
+                    vertices, family; zones joined; ADF where adf2hdf is installed",
             ..HOLDS
         },
         read,
@@ -54,15 +59,10 @@ const HOLDS: Holds =
     Holds { highest: Order::MAX, cells: &Cell::ALL, dimensions: &[2, 3], names: true, fields: false, notes: "" };
 
 fn detect(head: &Head) -> Verdict {
-    if head.bytes.starts_with(b"\x89HDF\r\n\x1a\n") {
-        return Verdict::ByContent;
+    if !head.bytes.starts_with(b"\x89HDF\r\n\x1a\n") && !adf::is(head.bytes) {
+        return Verdict::No;
     }
-    if head.bytes.get(4..).is_some_and(|rest| rest.starts_with(b"ADF Database Version")) {
-        return Verdict::Refused(Refusal::unread(
-            "a CGNS file in the old ADF form; rewrite it as HDF5: adf2hdf IN.cgns OUT.cgns (Debian package cgns-convert)",
-        ));
-    }
-    Verdict::No
+    kin::refusal(head).map_or(Verdict::ByContent, Verdict::Refused)
 }
 
 /// Reads a mesh.
@@ -70,22 +70,34 @@ fn detect(head: &Head) -> Verdict {
 /// # Errors
 /// [`Error`]. With a reader also where the HDF5 library crashes or hangs, which happens to the child only.
 fn read(input: Input, options: &ReadOptions) -> Result<Mesh, Error> {
-    let Input { path, length, content, .. } = input;
+    let Input { path, length, head, content } = input;
     drop(content); // the library opens files itself
+    if adf::is(&head) {
+        let rewritten = adf::rewritten(path, length, options.memory())?;
+        let mut mesh = hdf5(path, rewritten.path(), length, options)?;
+        mesh.note("the file was rewritten from the old ADF form by adf2hdf".into());
+        return Ok(mesh);
+    }
+    hdf5(path, path, length, options)
+}
+
+/// Reads the mesh of the user's file `path` of `length` bytes, which stands in `file`.
+fn hdf5(path: &Path, file: &Path, length: u64, options: &ReadOptions) -> Result<Mesh, Error> {
     let refused = |reason: String| Error::Format { file: path.to_path_buf(), reason };
     let bytes = match &options.reader {
-        Some(program) => child::ask(program, path, length)?,
+        Some(program) => child::ask(program, path, file, length, options.memory())?,
         None => {
             let mut bytes = Vec::new();
-            let dumped = dump::write(path, dump::room(length), &mut bytes);
-            dumped.map_err(|cause| {
-                refused(format!("the HDF5 library cannot read it ({cause}): the file is malformed"))
-            })?;
+            let dumped = dump::write(file, dump::room(length, options.memory()), &mut bytes, |_| ());
+            dumped.map_err(|source| Error::Io { file: path.to_path_buf(), action: "read", source })?;
             bytes
         }
     };
     let tree = tree::Tree::parse(&bytes).map_err(|failure| match failure {
-        tree::Failure::Told(cause) => refused(format!("the HDF5 library cannot read it: {cause}")),
+        tree::Failure::Told { node, cause } if node.is_empty() => {
+            refused(format!("the HDF5 library cannot read it: {cause}"))
+        }
+        tree::Failure::Told { node, cause } => Flaw::new(Place::Node(node), CgnsFault::Library(cause)).of(path),
         tree::Failure::Cut => {
             refused("the reading process gave no whole answer; does it call cgns::serve_reader?".into())
         }

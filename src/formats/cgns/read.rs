@@ -13,9 +13,12 @@ use crate::formats::assembly::{Assembly, node_of};
 use crate::formats::error::Flaw;
 use crate::mesh::{Mesh, NodeId};
 
-/// The mesh of the first base.
+/// The mesh of the first base whose cells have the highest dimension; others are of surfaces, or empty.
 pub(super) fn mesh(tree: &Tree) -> Result<Mesh, Flaw> {
-    let base = tree.child(labels::BASE).ok_or_else(|| tree.flaw(CgnsFault::NoBase))?;
+    let cells = |base: &Tree| base.ints().ok().and_then(|ints| ints.get(0)).unwrap_or(0);
+    let rank = |base: &&Tree| (base.child(labels::ZONE).is_some(), cells(base));
+    let bases = tree.all(labels::BASE).rev();
+    let base = bases.max_by_key(rank).ok_or_else(|| tree.flaw(CgnsFault::NoBase))?;
     let dimensions = base.ints()?;
     let dimension = match dimensions.get(0) {
         Some(2) => 2,
@@ -81,7 +84,8 @@ fn zone<'a>(tree: &'a Tree<'a>, start: usize) -> Result<Zone<'a>, Flaw> {
         points.resize(count, DVec3::ZERO);
         points.iter_mut().zip(values.iter()).for_each(|(point, &x)| point[axis] = x);
     }
-    Ok(Zone { tree, start, points, sections: sections(tree)? })
+    let cells = tree.ints()?.get(1).and_then(|n| u64::try_from(n).ok());
+    Ok(Zone { tree, start, points, cells, sections: sections(tree)? })
 }
 
 /// The points of all zones, each once; and the node of every point of every zone.
@@ -113,11 +117,13 @@ fn elements(
     tags: u64,
 ) -> Result<(), Flaw> {
     let mut own = Vec::new();
+    let mut cells = 0;
     for section in &zone.sections {
         // Neighbours in a section mostly share their patch.
         let mut last = None;
         section.each(|n, element| {
             let tag = section.first + n as u64;
+            cells += usize::from(element.cell.dimension() == conditions.dimension());
             assembly.set_order(element.cell, element.order).map_err(|fault| section.flaw(fault))?;
             own.clear();
             for number in element.nodes() {
@@ -134,5 +140,8 @@ fn elements(
             Ok(())
         })?;
     }
-    Ok(())
+    match zone.cells {
+        Some(needed) if needed != cells as u64 => Err(zone.tree.flaw(CgnsFault::Cells { found: cells, needed })),
+        _ => Ok(()),
+    }
 }

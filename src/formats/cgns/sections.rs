@@ -101,6 +101,11 @@ impl<'a> Section<'a> {
             visit(n, Element { cell, order, connectivity: self.connectivity, nodes: start..end })?;
             start = end;
         }
+        let found = self.connectivity.len();
+        if found > start {
+            let fault = CgnsFault::Length { what: "the connectivity", found, needed: start as u64 };
+            return Err(self.tree.flaw(fault));
+        }
         Ok(())
     }
 

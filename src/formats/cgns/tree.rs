@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use super::fault::CgnsFault;
 use super::labels::{self, kind};
 use crate::formats::error::{Fault, Flaw, Place};
+use crate::formats::names;
 
 /// Levels that are followed; the child goes less deep.
 const DEEPEST: usize = 64;
@@ -23,8 +24,8 @@ pub(super) struct Tree<'a> {
 /// Why an answer holds no tree.
 #[derive(Debug)]
 pub(super) enum Failure {
-    /// The library said why.
-    Told(String),
+    /// The library said why, perhaps in a node.
+    Told { node: String, cause: String },
     /// The answer ends too early.
     Cut,
 }
@@ -32,8 +33,8 @@ pub(super) enum Failure {
 impl<'a> Tree<'a> {
     /// The tree in an answer; the file itself is its root.
     pub(super) fn parse(answer: &'a [u8]) -> Result<Tree<'a>, Failure> {
-        if let Some(told) = answer.strip_prefix(labels::FAILURE) {
-            return Err(Failure::Told(String::from_utf8_lossy(told).into_owned()));
+        if let Some(answer) = answer.strip_suffix(labels::FAILURE) {
+            return Err(told(answer).unwrap_or(Failure::Cut));
         }
         let mut bytes = answer.strip_prefix(labels::TREE).ok_or(Failure::Cut)?;
         let children = children(&mut bytes, "", 0).ok_or(Failure::Cut)?;
@@ -49,7 +50,7 @@ impl<'a> Tree<'a> {
     }
 
     /// Children with a label.
-    pub(super) fn all<'b>(&'b self, label: &'static str) -> impl Iterator<Item = &'b Tree<'a>> {
+    pub(super) fn all<'b>(&'b self, label: &'static str) -> impl DoubleEndedIterator<Item = &'b Tree<'a>> {
         self.children.iter().filter(move |child| child.label == label)
     }
 
@@ -71,7 +72,8 @@ impl<'a> Tree<'a> {
     /// The array as text, without what pads it.
     pub(super) fn text(&self) -> String {
         let text = if self.kind == kind::TEXT { self.data } else { &[] };
-        String::from_utf8_lossy(text).trim_end_matches(['\0', ' ']).to_owned()
+        let end = text.iter().position(|&byte| byte == 0).unwrap_or(text.len()); // what C's programs take for its end
+        names::text(&text[..end]).trim_end().to_owned()
     }
 
     /// The array as whole numbers.
@@ -143,6 +145,15 @@ fn children<'a>(bytes: &mut &'a [u8], path: &str, depth: usize) -> Option<Vec<Tr
         nodes.push(Tree { path, name, label, kind, data, children });
     }
     Some(nodes)
+}
+
+/// The cause at the end of an answer, behind it its length.
+fn told(answer: &[u8]) -> Option<Failure> {
+    let (rest, length) = answer.split_last_chunk::<8>()?;
+    let length = usize::try_from(u64::from_le_bytes(*length)).ok()?;
+    let text = String::from_utf8_lossy(&rest[rest.len().checked_sub(length)?..]).into_owned();
+    let (node, cause) = text.split_once('\0')?;
+    Some(Failure::Told { node: node.to_owned(), cause: cause.to_owned() })
 }
 
 fn number(bytes: &mut &[u8]) -> Option<u64> {

@@ -13,6 +13,8 @@ pub(super) struct Zone<'a> {
     /// Points of the zones before it.
     pub(super) start: usize,
     pub(super) points: Vec<DVec3>,
+    /// Number of its cells, as it says.
+    pub(super) cells: Option<u64>,
     pub(super) sections: Vec<Section<'a>>,
 }
 
