@@ -11,7 +11,7 @@ use rustix::process::{
 };
 use std::ffi::OsStr;
 use std::fs::File;
-use std::io::{self, Read};
+use std::io::{self, Read, Write};
 use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -52,6 +52,8 @@ pub struct Limits {
     pub timeout: Duration,
     /// Address space, in bytes.
     pub memory: u64,
+    /// Bytes that it may write to its standard output.
+    pub output: u64,
 }
 
 /// What came of the child.
@@ -89,6 +91,9 @@ pub enum ChildError {
         /// What it had warned of until then.
         warnings: Vec<String>,
     },
+    /// It wrote more than it may, and was ended.
+    #[error("wrote more than it may")]
+    TooMuch,
     /// It could not be run.
     #[error("cannot be run: {0}")]
     Run(#[from] io::Error),
@@ -124,13 +129,14 @@ pub fn run(
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()?;
+    limit_memory_of(&child, limits.memory);
     let (Some(mut pipe), Some(errors)) = (child.stdout.take(), child.stderr.take()) else {
         return Err(io::Error::other("it has no standard output").into());
     };
     let (sender, receiver) = mpsc::channel();
     let reading = std::thread::spawn(move || {
         let mut bytes = Vec::new();
-        let result = pipe.read_to_end(&mut bytes).map(|_| bytes);
+        let result = pipe.by_ref().take(limits.output.saturating_add(1)).read_to_end(&mut bytes).map(|_| bytes);
         let _ = sender.send(result); // the receiver has gone after a time-out
     });
     let listening = std::thread::spawn(move || warnings_in(errors));
@@ -139,6 +145,10 @@ pub fn run(
         let _ = reading.join();
         return Err(ChildError::TimedOut { warnings: listening.join().unwrap_or_default() });
     };
+    if bytes.as_ref().is_ok_and(|bytes| bytes.len() as u64 > limits.output) {
+        end(&mut child);
+        return Err(ChildError::TooMuch);
+    }
     let status = child.wait()?;
     Ok(Outcome { bytes: bytes?, status, warnings: listening.join().unwrap_or_default() })
 }
@@ -164,6 +174,15 @@ fn warnings_in(mut errors: impl Read) -> Vec<String> {
 fn end(child: &mut Child) {
     let _ = kill_process_group(Pid::from_child(child), Signal::KILL);
     let _ = child.wait();
+}
+
+/// Sets the memory limit of a child that does not do so itself.
+fn limit_memory_of(child: &Child, bytes: u64) {
+    let limit = Rlimit { current: Some(bytes), maximum: Some(bytes) };
+    #[cfg(target_os = "linux")]
+    let _ = rustix::process::prlimit(Some(rustix::process::Pid::from_child(child)), Resource::As, limit); // it may have ended
+    #[cfg(not(target_os = "linux"))]
+    let _ = (child, limit);
 }
 
 /// In the child, first of all: keeps to the limits that the parent has set, and ends with it.
@@ -199,6 +218,12 @@ fn limit_memory() {
     let current = maximum.map_or(bytes, |maximum: u64| maximum.min(bytes));
     // a limit that the system refuses leaves the parent's time limit
     let _ = setrlimit(Resource::As, Rlimit { current: Some(current), maximum });
+}
+
+/// In the child: a line for [`Outcome::warnings`].
+pub fn warn(text: &str) {
+    // Where the parent is gone there is no one to tell.
+    let _ = writeln!(io::stderr(), "{WARNING_PREFIX}{}", text.escape_debug());
 }
 
 /// In the child: the pipe to the parent; whatever a library prints on standard output goes to `/dev/null` from here on.

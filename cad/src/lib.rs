@@ -19,10 +19,12 @@ mod closest;
 #[cfg(feature = "occt")]
 mod geometry;
 mod ids;
+pub mod memory;
 #[cfg(feature = "occt")]
 mod model;
 #[cfg(feature = "occt")]
 mod read;
+pub mod regular;
 pub mod tolerance;
 mod unit;
 

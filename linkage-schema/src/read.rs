@@ -36,7 +36,12 @@ impl Reading {
 
 /// Reads a file.
 pub fn read_path(path: &Path) -> Result<Reading, ReadError> {
-    let file = File::open(path).map_err(|source| ReadError::Open { file: path.to_owned(), source })?;
+    // A pipe would be waited for, and a device has no end.
+    let regular = std::fs::metadata(path).and_then(|metadata| match metadata.is_file() {
+        true => File::open(path),
+        false => Err(std::io::Error::other("it is not a regular file")),
+    });
+    let file = regular.map_err(|source| ReadError::Open { file: path.to_owned(), source })?;
     read(BufReader::with_capacity(256 * 1024, file), path)
 }
 

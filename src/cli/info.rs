@@ -45,13 +45,13 @@ enum Kind {
 /// The kind of a file by its first bytes.
 fn kind(path: &Path) -> Result<Kind, Failure> {
     use std::io::Read;
-    let mut head = Vec::new();
-    let open = std::fs::File::open(path).and_then(|file| file.take(4096).read_to_end(&mut head));
-    open.map_err(|error| format!("{}: cannot be read: {error}", path.display()))?;
-    let text = head.trim_ascii_start();
     if formats::is_mesh(path)? {
         return Ok(Kind::Mesh);
     }
+    let mut head = Vec::new();
+    let open = cad::regular::open(path).and_then(|file| file.take(4096).read_to_end(&mut head));
+    open.map_err(|error| format!("{}: cannot be read: {error}", path.display()))?;
+    let text = head.trim_ascii_start();
     Ok(match text {
         [b'<', ..] | [0xef, 0xbb, 0xbf, b'<', ..] => Kind::Linkage,
         _ => Kind::Cad,

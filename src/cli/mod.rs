@@ -37,6 +37,8 @@ use output::message;
 #[derive(Parser)]
 #[command(name = "sagitta", version, after_help = help::program())]
 struct Program {
+    #[command(flatten)]
+    reading: input::Reading,
     #[command(subcommand)]
     command: Command,
 }
@@ -92,6 +94,7 @@ pub fn run(arguments: Vec<OsString>) -> ExitCode {
             return code.into();
         }
     };
+    program.reading.choose();
     match run_command(&program.command) {
         Ok(code) => code.into(),
         Err(error) => {

@@ -111,7 +111,7 @@ impl Found {
     /// [`CheckpointError`].
     pub fn open(path: &Path) -> Result<Found, CheckpointError> {
         let failed = |source| failed(path, source);
-        let mut input = CrcReader::new(BufReader::new(File::open(path).map_err(failed)?));
+        let mut input = CrcReader::new(BufReader::new(cad::regular::open(path).map_err(failed)?));
         let mut magic = Vec::new();
         input.by_ref().take(MAGIC.len() as u64).read_to_end(&mut magic).map_err(failed)?;
         if magic != MAGIC {

@@ -1,7 +1,7 @@
 //! What the rest of the program knows of a mesh file format.
 
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
 use super::detect::{Head, Verdict};
@@ -102,15 +102,12 @@ impl<'a> Input<'a> {
     /// [`Error::Io`].
     pub(super) fn open(path: &'a Path) -> Result<Input<'a>, Error> {
         let failed = |source| Error::Io { file: path.to_path_buf(), action: "read", source };
-        let file = File::open(path).map_err(failed)?;
-        let metadata = file.metadata().map_err(failed)?;
-        if !metadata.is_file() {
-            return Err(failed(io::Error::other("it is not a regular file")));
-        }
+        let file = cad::regular::open(path).map_err(failed)?;
+        let length = file.metadata().map_err(failed)?.len();
         let mut content = BufReader::with_capacity(BUFFER, file);
         let head = content.fill_buf().map_err(failed)?;
         let head = head[..head.len().min(HEAD)].to_vec();
-        Ok(Input { path, length: metadata.len(), head, content })
+        Ok(Input { path, length, head, content })
     }
 
     /// What tells the format.

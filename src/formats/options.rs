@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::field::Field;
+use super::grid_layout::GridLayout;
 
 /// How files are read.
 #[derive(Clone, Debug, Default)]
@@ -14,6 +15,39 @@ pub struct ReadOptions {
     /// `cgns::READER_SUBCOMMAND`, before anything else. It is run with limits of time and memory, and whatever happens to it is
     /// an error here.
     pub reader: Option<PathBuf>,
+    /// Bytes of memory that reading one file may take, about; default half of the machine's.
+    ///
+    /// A file whose mesh takes more is refused, at once where its length tells; so are arrays that expand to more.
+    pub memory_limit: Option<u64>,
+    /// How a binary PLOT3D file is written, where its length fits several ways.
+    pub grid_layout: Option<GridLayout>,
+}
+
+/// Bytes of memory that a mesh takes for each byte of its file, at least.
+const MEMORY_OF_FILE: u64 = 2;
+
+impl ReadOptions {
+    /// The memory that reading may take, in bytes.
+    pub(super) fn memory(&self) -> u64 {
+        self.memory_limit.unwrap_or_else(cad::memory::half_of_machine)
+    }
+
+    /// Whether the mesh of a file of `length` bytes can be read at all.
+    ///
+    /// # Errors
+    /// What to tell the user.
+    pub(super) fn check_length(&self, length: u64) -> Result<(), String> {
+        let (needed, limit) = (length.saturating_mul(MEMORY_OF_FILE), self.memory());
+        if needed <= limit {
+            return Ok(());
+        }
+        Err(format!(
+            "reading {} MB takes {} MB of memory at least, and the limit is {} MB; raise it (--memory-limit), or is it no mesh?",
+            length >> 20,
+            needed >> 20,
+            limit >> 20
+        ))
+    }
 }
 
 /// How files are written, where a format leaves a choice.

@@ -219,7 +219,7 @@ pub fn validate(job: &Job) -> Result<Validation, ValidateError> {
         }
     }
     // Without the file, which was there a moment ago, findings stay at their elements.
-    let again = std::fs::File::open(&job.linkage).map(std::io::BufReader::new);
+    let again = cad::regular::open(&job.linkage).map(std::io::BufReader::new);
     again.and_then(|stream| findings.place_words(stream)).unwrap_or_default();
     Ok(validation.close(&findings))
 }

@@ -32,6 +32,7 @@
 #include <StepRepr_GlobalUnitAssignedContext.hxx>
 #include <StepRepr_RepresentationItem.hxx>
 #include <StepShape_FaceSurface.hxx>
+#include <Standard_Failure.hxx>
 #include <TColStd_SequenceOfAsciiString.hxx>
 #include <TopExp.hxx>
 #include <TopoDS_TShape.hxx>
@@ -42,6 +43,7 @@
 #include <XSControl_WorkSession.hxx>
 #include <cctype>
 #include <cmath>
+#include <fstream>
 #include <iostream>
 #include <map>
 #include <set>
@@ -297,8 +299,25 @@ void read_iges(const std::string& path, Source& source) {
 }
 
 void read_brep(const std::string& path, Source& source) {
+  std::ifstream input(path, std::ios::binary);
+  if (!input) throw std::runtime_error("the file cannot be opened");
+  // OCCT says little of what is wrong; where it stood when it gave up is told.
+  const auto where = [&] {
+    input.clear();
+    const auto end = input.tellg();
+    input.seekg(0);
+    std::streamoff lines = 1;
+    for (std::streamoff at = 0; at < end && input; at++) lines += input.get() == '\n';
+    return "line " + std::to_string(lines) + ": ";
+  };
   BRep_Builder builder;
-  if (!BRepTools::Read(source.shape, path.c_str(), builder)) throw std::runtime_error("the file cannot be parsed as BREP");
+  try {
+    BRepTools::Read(source.shape, input, builder);
+  } catch (const Standard_Failure& failure) {
+    const std::string cause = failure.GetMessageString();
+    throw std::runtime_error(where() + (cause.empty() ? "the file cannot be parsed as BREP" : cause));
+  }
+  if (source.shape.IsNull()) throw std::runtime_error(where() + "the file cannot be parsed as BREP");
 }
 
 } // namespace

@@ -1,7 +1,7 @@
 //! Which format a CAD file is in, by its first bytes.
 
 use crate::model::SourceFormat;
-use std::fs::File;
+use crate::regular;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
@@ -14,8 +14,37 @@ const HEAD: u64 = 4096;
 /// The file cannot be opened or read.
 pub(crate) fn detect(path: &Path) -> io::Result<Option<SourceFormat>> {
     let mut head = Vec::new();
-    File::open(path)?.take(HEAD).read_to_end(&mut head)?;
+    regular::open(path)?.take(HEAD).read_to_end(&mut head)?;
     Ok(of_head(&head))
+}
+
+/// What a file that is no CAD that is read seems to be, and what to do; by its first bytes.
+///
+/// # Errors
+/// The file cannot be opened or read.
+pub(crate) fn foreign(path: &Path) -> io::Result<Option<&'static str>> {
+    let mut head = Vec::new();
+    regular::open(path)?.take(HEAD).read_to_end(&mut head)?;
+    let holds = |word: &[u8]| head.windows(word.len()).any(|window| window == word);
+    let begins = |words: &[&[u8]]| words.iter().any(|word| head.trim_ascii_start().starts_with(word));
+    let stl = path.extension().is_some_and(|own| own.eq_ignore_ascii_case("stl"));
+    Ok(if stl || (begins(&[b"solid"]) && holds(b"facet")) {
+        Some("an STL file holds triangles only; export the CAD itself as STEP")
+    } else if begins(&[b"$MeshFormat", b"<VTKFile", b"# vtk DataFile", b"MeshVersionFormatted", b"NDIME"]) {
+        Some("it is a mesh; give the CAD that it was made from")
+    } else if begins(&[b"**ABCDEFGHIJKLMNOPQRSTUVWXYZ"]) {
+        Some("a Parasolid file; export STEP from the program that made it")
+    } else if holds(b"ACIS") || begins(&[b"700 0 ", b"400 0 "]) {
+        Some("an ACIS file; export STEP from the program that made it")
+    } else if begins(&[b"3D Geometry File Format"]) {
+        Some("a Rhino file; export STEP from the program that made it")
+    } else if begins(&[b"\xd0\xcf\x11\xe0", b"V5_CFV2"]) {
+        Some("a file of a CAD program; export STEP from it")
+    } else if head.starts_with(&[0x1f, 0x8b]) || head.starts_with(b"PK\x03\x04") {
+        Some("a compressed file; unpack it first")
+    } else {
+        None
+    })
 }
 
 fn of_head(head: &[u8]) -> Option<SourceFormat> {
@@ -54,7 +83,7 @@ const TAIL: i64 = 4096;
 /// # Errors
 /// The file cannot be opened or read.
 pub(crate) fn iges_is_whole(path: &Path) -> io::Result<bool> {
-    let mut file = File::open(path)?;
+    let mut file = regular::open(path)?;
     let length = file.metadata()?.len() as i64;
     file.seek(SeekFrom::End(-length.min(TAIL)))?;
     let mut tail = Vec::new();

@@ -73,10 +73,12 @@ pub enum ReadError {
         scale: f64,
     },
     /// Neither STEP nor IGES nor BREP by its content.
-    #[error("{}: not a CAD file: neither STEP nor IGES nor BREP by its content", path.display())]
+    #[error("{}: not a CAD file: neither STEP nor IGES nor BREP by its content{}", path.display(), instead.map_or_else(String::new, |told| format!(" ({told})")))]
     Format {
         /// The CAD file.
         path: PathBuf,
+        /// What it seems to be, and what to do.
+        instead: Option<&'static str>,
     },
     /// The reading program cannot be started.
     #[error("{}: the reading process {} cannot be run: {source}", path.display(), reader.display())]
@@ -164,7 +166,10 @@ impl Model {
         let owned = || path.to_path_buf();
         match crate::read::format::detect(path) {
             Err(source) => return Err(ReadError::Open { path: owned(), source }),
-            Ok(None) => return Err(ReadError::Format { path: owned() }),
+            Ok(None) => {
+                let instead = crate::read::format::foreign(path).unwrap_or_default();
+                return Err(ReadError::Format { path: owned(), instead });
+            }
             Ok(Some(SourceFormat::Iges)) if !crate::read::format::iges_is_whole(path).unwrap_or(true) => {
                 let cause = "the file is cut short: its terminate section is missing".to_owned();
                 return Err(ReadError::Refused { path: owned(), cause });
@@ -215,12 +220,13 @@ fn is_memory(cause: &str) -> bool {
 
 /// Runs the child to its end or the time limit; gives what it wrote.
 fn run(reader: &Reader, path: &Path, scale: f64) -> Result<Outcome, ReadError> {
-    let limits = Limits { timeout: reader.timeout, memory: reader.memory_limit };
+    let limits = Limits { timeout: reader.timeout, memory: reader.memory_limit, output: reader.memory_limit };
     let scale = (SCALE_VARIABLE, scale.to_string());
     child::run(&reader.program, READER_SUBCOMMAND, path, &[scale], limits).map_err(|error| match error {
         ChildError::TimedOut { warnings } => {
             ReadError::TimedOut { path: path.to_path_buf(), limit: reader.timeout, warnings }
         }
+        ChildError::TooMuch => ReadError::OutOfMemory { path: path.to_path_buf(), limit: reader.memory_limit },
         ChildError::Run(source) => {
             ReadError::Reader { path: path.to_path_buf(), reader: reader.program.clone(), source }
         }

@@ -22,12 +22,12 @@ pub(super) struct Flaw {
     what: String,
 }
 
-/// Reads the columns `x`, `y`, `z`, found by their names in the first line.
+/// Reads the columns `x`, `y`, `z`, found by their names in the first line; of a text of `most` bytes at most.
 ///
 /// # Errors
-/// Columns that are missing or stand there twice, no points, what is no finite number.
-pub(super) fn read(input: impl Read) -> Result<Vec<DVec3>, Flaw> {
-    let mut lines = Lines::new(input);
+/// A longer text, columns that are missing or stand there twice, no points, what is no finite number.
+pub(super) fn read(input: impl Read, most: u64) -> Result<Vec<DVec3>, Flaw> {
+    let mut lines = Lines::new(input, most);
     let empty = "it is empty; give columns named x, y, z and a point a line";
     let columns = lines.next()?.ok_or_else(|| lines.flaw(empty.into()))?;
     let columns = Columns::new(&columns).map_err(|what| lines.flaw(what))?;
@@ -41,19 +41,39 @@ pub(super) fn read(input: impl Read) -> Result<Vec<DVec3>, Flaw> {
     Ok(points)
 }
 
+/// An input that ends with an error where it is too long.
+struct Bounded<R> {
+    input: R,
+    /// Bytes that may still come.
+    left: u64,
+}
+
+impl<R: Read> Read for Bounded<R> {
+    fn read(&mut self, into: &mut [u8]) -> std::io::Result<usize> {
+        let count = self.input.read(into)?;
+        let left = self.left.checked_sub(count as u64);
+        let told = "it is too long for the memory that reading may take; raise it (--memory-limit), or is it no list of points?";
+        self.left = left.ok_or_else(|| std::io::Error::other(told))?;
+        Ok(count)
+    }
+}
+
 /// Lines that are not empty, with their numbers.
 struct Lines<R> {
     /// Behind the input stands a line's end, so that the last line has one in any case.
-    reader: Reader<Chain<R, &'static [u8]>>,
+    reader: Reader<Chain<Bounded<R>, &'static [u8]>>,
     record: ByteRecord,
 }
 
 impl<R: Read> Lines<R> {
-    fn new(input: R) -> Lines<R> {
+    fn new(input: R, most: u64) -> Lines<R> {
         let mut builder = ReaderBuilder::new();
         // '\r' is space at the end of a line, so that lines are counted by '\n' alone
         builder.has_headers(false).flexible(true).terminator(Terminator::Any(b'\n'));
-        Lines { reader: builder.from_reader(input.chain(&b"\n"[..])), record: ByteRecord::new() }
+        Lines {
+            reader: builder.from_reader(Bounded { input, left: most }.chain(&b"\n"[..])),
+            record: ByteRecord::new(),
+        }
     }
 
     /// The values of the next line, without spaces around them.
@@ -165,7 +185,7 @@ mod tests {
     #[test]
     fn columns_are_found_by_name() {
         let text = "\u{feff}\"a, id\", Z ,\"y\",X\r\n\"1,2\", 3,2e0 ,\"1\"\r\n\r\n2,-3,-2,-1";
-        let points = read(text.as_bytes()).unwrap();
+        let points = read(text.as_bytes(), u64::MAX).unwrap();
         assert_eq!(points, [DVec3::new(1.0, 2.0, 3.0), DVec3::new(-1.0, -2.0, -3.0)]);
     }
 
@@ -187,7 +207,7 @@ mod tests {
             ("x,y,z\n1,2,3\n1,2", 3, "2 columns"),
             ("x,y,z\n1,2,\"3\"\r\n  \r\n1,2,nought", 4, "z is \"nought\""),
         ] {
-            let flaw = read(text.as_bytes()).unwrap_err();
+            let flaw = read(text.as_bytes(), u64::MAX).unwrap_err();
             assert!(flaw.line == line && flaw.what.contains(words), "{text:?}: {flaw}");
         }
     }

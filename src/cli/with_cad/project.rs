@@ -1,6 +1,5 @@
 //! `sagitta project`.
 
-use std::fs::File;
 use std::io::BufReader;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -16,6 +15,7 @@ use super::reading::in_a_child;
 use super::values::{factor, seconds};
 use crate::cli::exit::{DONE, NOT_CERTIFIED};
 use crate::cli::files::Files;
+use crate::cli::input::memory;
 use crate::cli::output::{Beside, Failure, message, print, write_json};
 use crate::cli::threads;
 use crate::formats;
@@ -114,13 +114,17 @@ fn split(list: &str) -> Vec<&str> {
     list.split(outside).map(str::trim).collect()
 }
 
+/// Bytes of memory that points and their feet take for each byte of their text, about.
+const MEMORY_OF_TEXT: u64 = 8;
+
 fn read_points(path: &Path) -> Result<Vec<DVec3>, Failure> {
+    let most = memory(u64::MAX) / MEMORY_OF_TEXT;
     let (name, read) = if path == Path::new("-") {
-        ("standard input".to_owned(), points::read(std::io::stdin().lock()))
+        ("standard input".to_owned(), points::read(std::io::stdin().lock(), most))
     } else {
         let name = path.display().to_string();
-        let file = File::open(path).map_err(|error| format!("{name}: cannot be read: {error}"))?;
-        (name, points::read(BufReader::new(file)))
+        let file = cad::regular::open(path).map_err(|error| format!("{name}: cannot be read: {error}"))?;
+        (name, points::read(BufReader::new(file), most))
     };
     read.map_err(|flaw| format!("{name}, {flaw}").into())
 }

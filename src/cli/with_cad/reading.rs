@@ -7,6 +7,7 @@ use cad::{ReadOptions, Reader};
 use clap::Args;
 
 use super::values::{factor, seconds};
+use crate::cli::input::memory;
 
 /// Options of reading CAD.
 #[derive(Args)]
@@ -41,6 +42,8 @@ impl Reading {
 
 /// This very program reads the CAD in a child process, which a malformed file may crash.
 pub(super) fn in_a_child(timeout: f64, scale: f64) -> ReadOptions {
-    let reader = Reader { timeout: Duration::from_secs_f64(timeout), ..Reader::new(this_program()) };
+    let reader = Reader::new(this_program());
+    let memory_limit = memory(reader.memory_limit);
+    let reader = Reader { timeout: Duration::from_secs_f64(timeout), memory_limit, ..reader };
     ReadOptions { scale, reader: Some(reader) }
 }

@@ -87,13 +87,9 @@ pub(super) fn mesh(blocks: Vec<Block>) -> Result<Mesh, Fault> {
     for b in 0..blocks.len() {
         each_face(b, &mut |_, corners| *faces.entry(key(corners)).or_default() += 1);
     }
-    let mut collapsed = 0;
     for (b, block) in blocks.iter().enumerate() {
         for cell in block.cells() {
             let corners = block.corners(cell).map(|n| nodes[b][n]);
-            let mut sorted = corners;
-            sorted.sort_unstable();
-            collapsed += usize::from(sorted.windows(2).any(|pair| pair[0] == pair[1]));
             assembly.push(Cell::Hex, EntityKey::new(3, b as i32 + 1), &corners);
         }
     }
@@ -109,7 +105,7 @@ pub(super) fn mesh(blocks: Vec<Block>) -> Result<Mesh, Fault> {
             assembly.entity(EntityKey::new(2, tag), vec![group]);
         }
     }
-    notes(&mut assembly, &blocks, joined, collapsed);
+    notes(&mut assembly, &blocks, joined);
     if blocks.len() > 1 || joined > 0 {
         let name = |b: usize| format!("/Base/blk-{}", b + 1);
         assembly.parts.zones = nodes.into_iter().enumerate().map(|(b, nodes)| Zone { name: name(b), nodes }).collect();
@@ -117,13 +113,10 @@ pub(super) fn mesh(blocks: Vec<Block>) -> Result<Mesh, Fault> {
     assembly.finish()
 }
 
-fn notes(assembly: &mut Assembly, blocks: &[Block], joined: usize, collapsed: usize) {
+fn notes(assembly: &mut Assembly, blocks: &[Block], joined: usize) {
     let notes = &mut assembly.parts.notes;
     if joined > 0 {
         notes.push(format!("{joined} points on block sides coincide exactly with others and were merged with them"));
-    }
-    if collapsed > 0 {
-        notes.push(format!("{collapsed} cells have collapsed edges, where a hex cannot be valid"));
     }
     let blanked: usize = blocks.iter().map(|block| block.blanked).sum();
     if blanked > 0 {

@@ -5,19 +5,18 @@
 //! no boundary.
 
 mod blocks;
-mod kind;
 
 use std::io::BufRead;
 
 use super::detect::Verdict;
 use super::error::{Error, Fault, Flaw};
 use super::format::{Format, Holds, Input, Reader};
+use super::grid_layout::GridLayout;
 use super::numbers::{Encoding, Numbers};
 use super::options::ReadOptions;
 use crate::element::{Cell, Order};
 use crate::mesh::Mesh;
 use blocks::Block;
-use kind::Kind;
 
 /// Structured grids of many codes.
 pub(super) static FORMAT: Format = Format {
@@ -45,21 +44,42 @@ const REPEATED: usize = 16;
 ///
 /// # Errors
 /// [`Error::Format`] where no way to write the numbers fits the length; [`Error::Content`].
-fn read(input: Input, _: &ReadOptions) -> Result<Mesh, Error> {
+fn read(input: Input, options: &ReadOptions) -> Result<Mesh, Error> {
     let Input { path, length, head, content } = input;
     let flaw = |flaw: Flaw| flaw.of(path);
     if head.iter().all(|byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace()) {
         return text(&mut Numbers::new(content, length, Encoding::Text), &head).map_err(flaw);
     }
-    let Some(kind) = kind::of(&head, length) else {
-        let reason = "its length fits no PLOT3D grid of three dimensions, single or double precision, with or without \
-                      iblank, in C's or Fortran's records of either byte order: it is cut off, or not a grid file";
-        return Err(Error::Format { file: path.to_path_buf(), reason: reason.into() });
-    };
+    let refused = |reason| Error::Format { file: path.to_path_buf(), reason };
+    let kind = kind(&GridLayout::fitting(&head, length), options.grid_layout).map_err(refused)?;
     binary(&mut Numbers::new(content, length, Encoding::Bytes(kind.layout)), kind).map_err(flaw)
 }
 
-fn binary(numbers: &mut Numbers<impl BufRead>, kind: Kind) -> Result<Mesh, Flaw> {
+/// The way of writing that was asked for, or the only one that fits.
+///
+/// # Errors
+/// What to tell the user.
+fn kind(fitting: &[GridLayout], asked: Option<GridLayout>) -> Result<GridLayout, String> {
+    match (fitting, asked) {
+        ([], _) => {
+            Err("its length fits no PLOT3D grid of three dimensions, single or double precision, with or without \
+                        iblank, in C's or Fortran's records of either byte order: it is cut off, or not a grid file"
+                .into())
+        }
+        (all, Some(asked)) if all.contains(&asked) => Ok(asked),
+        (&[only], None) => Ok(only),
+        (all, asked) => {
+            let names: Vec<String> = all.iter().map(GridLayout::to_string).collect();
+            let asked = asked.map_or_else(String::new, |asked| format!(", not {asked}"));
+            Err(format!(
+                "its length fits a PLOT3D grid that is written as {}{asked}; say which (--plot3d-layout)",
+                names.join(" or as ")
+            ))
+        }
+    }
+}
+
+fn binary(numbers: &mut Numbers<impl BufRead>, kind: GridLayout) -> Result<Mesh, Flaw> {
     let mut count = 1;
     if kind.several {
         numbers.begin_record("the number of blocks")?;
