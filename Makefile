@@ -18,7 +18,7 @@ SAGITTA := $(TARGET)/release/sagitta
 
 # The steps of a target run in their order, also under -j.
 .NOTPARALLEL:
-.PHONY: help setup setup-build build demo venv test lint unit examples bench oracle table engines picture bench-cases consumers figures reliability schema doc
+.PHONY: help setup setup-build build demo venv test lint unit examples fuzz bench oracle table engines picture bench-cases consumers figures reliability schema doc
 
 help: ## this list
 	@echo "sagitta curves linear viscous CFD meshes onto their CAD. Targets:"
@@ -70,6 +70,9 @@ examples: setup-build ## run the programs in examples/
 	@for example in curve_in_memory check convert project; do \
 	    echo "== $$example"; cargo run --quiet --profile $(TEST_PROFILE) --example $$example; \
 	done
+
+fuzz: setup-build ## 10 000 mutants of the samples of every format (SAGITTA_FUZZ=N, SAGITTA_SEED=N); a quarter of an hour
+	SAGITTA_FUZZ=$${SAGITTA_FUZZ:-10000} cargo test --release --test suite -- --exact fuzz_formats::damaged_files_are_answered --nocapture
 
 bench: build ## benchmarks; minutes, not a test
 	cargo bench --bench curve

@@ -11,7 +11,11 @@ use sagitta::mesh::elevate::elevate;
 use sagitta::mesh::{EntityKey, Mesh, NodeId};
 
 fn read(path: &Path) -> Mesh {
-    formats::read_with(path, &ReadOptions { reader: Some(env!("CARGO_BIN_EXE_sagitta").into()) }).unwrap()
+    formats::read_with(
+        path,
+        &ReadOptions { reader: Some(env!("CARGO_BIN_EXE_sagitta").into()), ..ReadOptions::default() },
+    )
+    .unwrap()
 }
 
 fn sample(name: &str) -> Mesh {
@@ -132,7 +136,7 @@ fn cgnscheck_finds_nothing() {
 #[test]
 fn a_file_is_the_same_whichever_process_parses_it() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/samples");
-    let reader = ReadOptions { reader: Some(env!("CARGO_BIN_EXE_sagitta").into()) };
+    let reader = ReadOptions { reader: Some(env!("CARGO_BIN_EXE_sagitta").into()), ..ReadOptions::default() };
     let mut compared = 0;
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -160,8 +164,11 @@ fn a_damaged_file_is_refused_in_this_process_too() {
 #[test]
 fn a_reader_that_does_not_serve_is_told() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/samples/mixed_bc.cgns");
-    let told =
-        |reader: &str| formats::read_with(&path, &ReadOptions { reader: Some(reader.into()) }).unwrap_err().to_string();
+    let told = |reader: &str| {
+        formats::read_with(&path, &ReadOptions { reader: Some(reader.into()), ..ReadOptions::default() })
+            .unwrap_err()
+            .to_string()
+    };
     assert!(told("/bin/true").contains("does it call cgns::serve_reader"), "{}", told("/bin/true"));
     assert!(told("/bin/none").contains("the reading process /bin/none cannot be run"), "{}", told("/bin/none"));
 }

@@ -5,15 +5,37 @@
 //! each, and so fewer by default.
 //! This test stands alone in its process: it reads the process' peak of address space.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use crate::common::random::Random;
 use sagitta::formats::{self, ReadOptions};
+use sagitta::mesh::Mesh;
 
 /// Mutations of each format; of CGNS.
 const MUTATIONS: [u64; 2] = [2_000, 100];
 /// Peak address space that all reads together may add; the largest sample has 200 kB.
 const ALLOWANCE_KB: u64 = 64 << 10;
+
+/// The longest that reading one file may take, on a machine that has other work too.
+const SLOWEST: Duration = Duration::from_secs(20);
+
+/// What holds of every mesh that was read, counted here once more: nodes are there, no cell is there twice, numbers and names are such.
+fn sound(mesh: &Mesh) {
+    assert!(mesh.blocks().iter().all(|b| b.nodes.iter().all(|n| n.index() < mesh.points().len())));
+    assert!(mesh.blocks().iter().all(|b| b.nodes.len() == b.tags.len() * b.stride(mesh.order())));
+    assert!(mesh.points().iter().all(|x| x.is_finite()));
+    let (mut corners, mut tags) = (HashSet::new(), HashSet::new());
+    for cell in mesh.cells().iter() {
+        let mut own: Vec<usize> = cell.corners().iter().map(|node| node.index()).collect();
+        own.sort_unstable();
+        assert!(corners.insert((cell.cell, own)), "cell {} is there twice", cell.tag);
+        assert!(tags.insert(cell.tag), "number {} is there twice", cell.tag);
+    }
+    let names = mesh.physical_names().iter().map(|group| &group.name);
+    assert!(names.chain(mesh.conditions().iter().map(|own| &own.name)).all(|name| !name.contains(['\n', '"', '\0'])));
+}
 
 /// Damages a file in one or two places.
 fn damage(content: &mut Vec<u8>, dice: &mut Random) {
@@ -22,8 +44,15 @@ fn damage(content: &mut Vec<u8>, dice: &mut Random) {
         // Half of the damage goes to the head, where the counts stand.
         let at = if dice.below(2) == 0 { at % 600 } else { at };
         let end = (at + 1 + dice.below(16)).min(content.len());
-        match dice.below(7) {
+        match dice.below(9) {
             0 => content.truncate(at),
+            // A line is lost, or is there twice.
+            kind @ (7 | 8) => {
+                let start = content[..at].iter().rposition(|&byte| byte == b'\n').map_or(0, |n| n + 1);
+                let end = content[at..].iter().position(|&byte| byte == b'\n').map_or(content.len(), |n| at + n + 1);
+                let line: Vec<u8> = content[start..end].to_vec();
+                content.splice(start..end, if kind == 7 { Vec::new() } else { [&line[..], &line].concat() });
+            }
             1 if at < content.len() => content[at] ^= 1 << dice.below(8),
             2 if at < end => drop(content.drain(at..end)),
             3 if at < end => content[at..end].fill(0xff),
@@ -89,20 +118,22 @@ fn grids() -> [(PathBuf, Vec<u8>); 2] {
 fn fuzz(format: &Format, seed: u64) {
     let samples = samples(format);
     let dir = tempfile::tempdir().unwrap();
-    let options = ReadOptions { reader: Some(env!("CARGO_BIN_EXE_sagitta").into()) };
+    let options = ReadOptions { reader: Some(env!("CARGO_BIN_EXE_sagitta").into()), ..ReadOptions::default() };
     let mut dice = Random(seed);
-    let (mut read, mut refused) = (0, 0);
+    let (mut read, mut refused, mut slowest) = (0, 0, Duration::ZERO);
     for n in 0..format.mutations {
         let (file, whole) = &samples[dice.below(samples.len())];
         let mut content = whole.clone();
         damage(&mut content, &mut dice);
         let path = dir.path().join(file.file_name().unwrap());
         std::fs::write(&path, &content).unwrap();
-        match std::panic::catch_unwind(|| formats::read_with(&path, &options)) {
+        let start = Instant::now();
+        let read_or_not = std::panic::catch_unwind(|| formats::read_with(&path, &options));
+        slowest = slowest.max(start.elapsed());
+        match read_or_not {
             Ok(Ok(mesh)) => {
                 read += 1;
-                assert!(mesh.blocks().iter().all(|b| b.nodes.iter().all(|n| n.index() < mesh.points().len())));
-                assert!(mesh.blocks().iter().all(|b| b.nodes.len() == b.tags.len() * b.stride(mesh.order())));
+                sound(&mesh);
             }
             Ok(Err(error)) => {
                 refused += 1;
@@ -116,7 +147,8 @@ fn fuzz(format: &Format, seed: u64) {
             }
         }
     }
-    println!("{}: {read} read, {refused} refused", format.name);
+    println!("{}: {read} read, {refused} refused, the slowest in {:.2} s", format.name, slowest.as_secs_f64());
+    assert!(slowest < SLOWEST, "{}: {slowest:?}", format.name);
     assert!(read > format.mutations / 50 && refused > format.mutations / 50, "{}", format.name);
 }
 

@@ -15,7 +15,7 @@ fn sample(file: &str) -> PathBuf {
 
 /// Reading CGNS takes the program itself.
 fn read(path: &Path) -> Mesh {
-    let options = ReadOptions { reader: Some(env!("CARGO_BIN_EXE_sagitta").into()) };
+    let options = ReadOptions { reader: Some(env!("CARGO_BIN_EXE_sagitta").into()), ..ReadOptions::default() };
     formats::read_with(path, &options).unwrap()
 }
 

@@ -13,10 +13,8 @@ use sagitta::mesh::{EntityKey, Mesh};
 use serde_json::Value;
 
 /// Files that are refused, and what is told of them.
-const REFUSED: [(&str, &str); 13] = [
+const REFUSED: [(&str, &str); 11] = [
     ("ngon.cgns", "/Base/blk-1/Cells: arbitrary polyhedra (NGON_n, NFACE_n), which cannot be curved; export the mesh"),
-    ("hexpyrtet_p1_adf.cgns", "in the old ADF form; rewrite it as HDF5: adf2hdf"),
-    ("mixed_bc_adf.cgns", "in the old ADF form; rewrite it as HDF5: adf2hdf"),
     ("box_msh40a.msh", "MSH version 4 is not read; save as version 4.1 or 2.2"),
     ("hexpyrtet_p1.unv", "universal file (UNV), which is not read; convert it: gmsh"),
     ("cylprism_p1.unv", "universal file (UNV)"),
@@ -53,7 +51,10 @@ fn files() -> Vec<PathBuf> {
 
 /// Reading CGNS takes the program itself.
 fn read(path: &Path) -> Result<Mesh, formats::Error> {
-    formats::read_with(path, &ReadOptions { reader: Some(env!("CARGO_BIN_EXE_sagitta").into()) })
+    formats::read_with(
+        path,
+        &ReadOptions { reader: Some(env!("CARGO_BIN_EXE_sagitta").into()), ..ReadOptions::default() },
+    )
 }
 
 fn counts(mesh: &Mesh) -> BTreeMap<String, u64> {
@@ -126,7 +127,13 @@ fn files_hold_for_us_what_they_hold_for_other_programs() {
         if REFUSED.iter().any(|(refused, _)| *refused == file) {
             continue;
         }
-        let mesh = read(&path).unwrap_or_else(|error| panic!("{error}"));
+        let mesh = match read(&path) {
+            Err(error) if error.to_string().contains("adf2hdf, which rewrites it, is not installed") => {
+                crate::common::warn(&format!("adf2hdf (Debian package cgns-convert) is missing: {file} is NOT read"));
+                continue;
+            }
+            read => read.unwrap_or_else(|error| panic!("{error}")),
+        };
         let theirs = &figures[&file];
         assert!(theirs.is_object(), "{file} has figures");
         if theirs["unread"].is_array() {
@@ -150,7 +157,7 @@ fn what_is_refused_is_told_with_a_remedy() {
         assert!(error.starts_with(path.to_str().unwrap()) && error.contains(told), "{error}");
         refused += 1;
     }
-    assert!(refused >= 4);
+    assert!(refused >= 3);
 }
 
 #[test]
