@@ -45,10 +45,10 @@ fn pipes_and_devices_are_not_waited_for() {
     refused(args!["curve", "-q", mesh, "--cad", step, "--order", "2", "-o", out], &["f.step", what]);
     refused(args!["curve", "-q", mesh, "--cad", cad, "--linkage", xml, "--order", "2", "-o", out], &["f.xml", what]);
     refused(args!["groups", step], &["f.step", what]);
-    refused(args!["project", cad, msh], &["f.msh", what]);
+    refused(args!["project", "-q", cad, msh], &["f.msh", what]);
     for device in ["/dev/zero", "/dev/stdin"] {
         refused(args!["info", device], &[device, what]);
-        refused(args!["project", cad, device], &[device, what]);
+        refused(args!["project", "-q", cad, device], &[device, what]);
     }
 }
 
