@@ -36,7 +36,7 @@ mod vtk;
 use std::path::{Path, PathBuf};
 
 use format::Input;
-use recognise::{detect, folder};
+use recognise::{case_folder, detect};
 
 pub use error::{Error, Fault, Flaw, Place};
 pub use field::{Field, Support, Values};
@@ -66,7 +66,7 @@ pub fn read(path: &Path) -> Result<Mesh, Error> {
 /// Those of [`read`].
 pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Mesh, Error> {
     let refused = |reason| Error::Format { file: path.to_path_buf(), reason };
-    if let Some(refusal) = folder(path) {
+    if let Some(refusal) = case_folder(path) {
         return Err(refused(refusal.reason));
     }
     let input = Input::open(path)?;
@@ -84,7 +84,7 @@ pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Mesh, Error> {
 /// # Errors
 /// [`Error::Io`].
 pub fn is_mesh(path: &Path) -> Result<bool, Error> {
-    if folder(path).is_some() {
+    if case_folder(path).is_some() {
         return Ok(true);
     }
     Ok(detect(&Input::open(path)?.head()).map_or_else(|refusal| refusal.is_mesh, |_| true))

@@ -8,7 +8,7 @@ use super::format::Format;
 use super::registry::{REGISTRY, readable};
 
 /// What a folder is that holds a mesh as several files, where it is known.
-pub(super) fn folder(path: &Path) -> Option<Refusal> {
+pub(super) fn case_folder(path: &Path) -> Option<Refusal> {
     let is = path.join("constant/polyMesh").is_dir() || (path.ends_with("polyMesh") && path.join("faces").exists());
     let told = "an OpenFOAM case, which is not read: its polyhedra cannot be curved; write the mesh in another format";
     is.then(|| Refusal::unread(told))

@@ -4,7 +4,7 @@ use std::io::{BufRead, Write};
 
 use crate::formats::error::{Fault, Flaw};
 use crate::formats::names::is_plain;
-use crate::formats::output::Unwritten;
+use crate::formats::part::Unwritten;
 use crate::formats::scanner::Scanner;
 use crate::mesh::PhysicalName;
 
