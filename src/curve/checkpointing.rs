@@ -40,6 +40,10 @@ impl Observer for Checkpointing<'_> {
         self.observer.step(step);
     }
 
+    fn may_recover(&mut self) -> bool {
+        self.observer.may_recover()
+    }
+
     fn progress(&mut self, progress: &Progress) -> bool {
         self.observer.progress(progress)
     }

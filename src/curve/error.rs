@@ -48,14 +48,6 @@ pub enum Error {
         /// The first of them, by kind and number.
         listed: String,
     },
-    /// Cells that are there twice.
-    #[error("{count} cells have the same corners as another one: {listed}; remove them")]
-    Overlapping {
-        /// How many elements.
-        count: usize,
-        /// The first of them, by kind and number.
-        listed: String,
-    },
     /// The linear mesh is invalid.
     #[error("the linear mesh is itself inverted in {count} elements: {listed}; repair it first")]
     Inverted {

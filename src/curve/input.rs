@@ -25,10 +25,6 @@ pub(super) fn checked(linear: Mesh) -> Result<Mesh, Error> {
         let (count, listed) = (skin.crossed.len(), listed(&linear.sides(), &skin.crossed));
         return Err(Error::Crossed { count, listed });
     }
-    if !skin.overlapping.is_empty() {
-        let (count, listed) = (skin.overlapping.len(), listed(&linear.cells(), &skin.overlapping));
-        return Err(Error::Overlapping { count, listed });
-    }
     let certificate = certify::mesh(&linear, linear.points(), None, &certify::Settings::default());
     if certificate.holds() {
         return Ok(linear.with_unmarked(&skin));

@@ -90,6 +90,10 @@ impl Lower<'_> {
 struct Silent<'o>(&'o mut dyn Observer);
 
 impl Observer for Silent<'_> {
+    fn may_recover(&mut self) -> bool {
+        self.0.may_recover()
+    }
+
     fn progress(&mut self, progress: &Progress) -> bool {
         self.0.progress(progress)
     }

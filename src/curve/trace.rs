@@ -87,6 +87,10 @@ impl Observer for Trace<'_> {
         self.observer.step(step);
     }
 
+    fn may_recover(&mut self) -> bool {
+        self.observer.may_recover()
+    }
+
     fn progress(&mut self, progress: &Progress) -> bool {
         self.rows.push(Row {
             seconds: self.seconds(),

@@ -23,10 +23,6 @@ pub struct Skin {
     pub crossed: Vec<ElementId>,
     /// Boundary elements that are no side of any cell.
     pub strays: Vec<ElementId>,
-    /// Boundary elements with the corners of an earlier one.
-    pub doubled: Vec<ElementId>,
-    /// Cells with the corners of an earlier one of the same shape.
-    pub overlapping: Vec<ElementId>,
     /// Nodes of no element.
     pub isolated: Vec<NodeId>,
 }
@@ -35,16 +31,14 @@ impl Skin {
     /// Looks at the sides of all cells.
     #[must_use]
     pub fn of(mesh: &Mesh) -> Skin {
-        let mut skin = Skin { isolated: isolated(mesh), overlapping: overlapping(mesh), ..Skin::default() };
+        let mut skin = Skin { isolated: isolated(mesh), ..Skin::default() };
         let mut of_cells: Vec<FaceKey> = mesh.cells().iter().flat_map(|cell| cell.sides()).collect();
         of_cells.par_sort_unstable();
         let mut marked: FxHashSet<FaceKey> = FxHashSet::default();
         let mut unmatched = Vec::new();
         for side in mesh.sides().iter() {
             let key = FaceKey::new(side.corners());
-            if !marked.insert(key) {
-                skin.doubled.push(side.id);
-            } else if of_cells.binary_search(&key).is_err() {
+            if marked.insert(key) && of_cells.binary_search(&key).is_err() {
                 unmatched.push((side.id, set(side.corners())));
             }
         }
@@ -77,10 +71,6 @@ impl Skin {
         let crossed = "boundary elements have their corners in an order in which their edges cross";
         tell(crossed, self.crossed.len(), list(&self.crossed, number));
         tell("boundary elements are no side of any cell", self.strays.len(), list(&self.strays, number));
-        let doubled = "boundary elements have the corners of another one";
-        tell(doubled, self.doubled.len(), list(&self.doubled, number));
-        let cell = |id: &ElementId| mesh.cells().get(*id).tag;
-        tell("cells have the corners of another one", self.overlapping.len(), list(&self.overlapping, cell));
         let node = |id: &NodeId| mesh.node_tags()[id.index()];
         tell("nodes belong to no element", self.isolated.len(), list(&self.isolated, node));
         notes
@@ -169,25 +159,6 @@ fn isolated(mesh: &Mesh) -> Vec<NodeId> {
     let mut used = vec![false; mesh.points().len()];
     mesh.blocks().iter().flat_map(|block| &block.nodes).for_each(|node| used[node.index()] = true);
     (0..used.len()).filter(|&node| !used[node]).filter_map(|node| NodeId::new(node).ok()).collect()
-}
-
-/// Cells with the corners of an earlier one.
-fn overlapping(mesh: &Mesh) -> Vec<ElementId> {
-    let cells = mesh.cells();
-    let mut all: Vec<([NodeId; 8], ElementId)> = cells
-        .par_iter()
-        .map(|cell| {
-            let mut corners = [NodeId::NONE; 8];
-            corners.iter_mut().zip(cell.corners()).for_each(|(slot, &node)| *slot = node);
-            corners.sort_unstable();
-            (corners, cell.id)
-        })
-        .collect();
-    all.par_sort_unstable();
-    let mut later: Vec<ElementId> =
-        all.chunk_by(|a, b| a.0 == b.0).flat_map(|same| same[1..].iter().map(|&(_, id)| id)).collect();
-    later.sort_unstable();
-    later
 }
 
 /// Corners without their order.

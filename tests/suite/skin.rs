@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use crate::common::{fixture, json, sagitta};
-use sagitta::element::Cell;
+use sagitta::curve::Settings;
+use sagitta::element::{Cell, Order};
 use sagitta::formats::{self, WriteOptions};
 use sagitta::mesh::{Block, Mesh, Parts, Skin};
 
@@ -58,55 +59,51 @@ fn a_wall_without_boundary_elements_is_curved() {
     }
 }
 
-/// Corners in an order in which edges cross are refused by number.
+/// Boundary elements whose edges cross are put right along the cells' faces when a file is read; of a mesh in memory they are refused.
 #[test]
-fn crossed_boundary_elements_are_refused() {
+fn crossed_boundary_elements_are_put_right_or_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let mut number = 0;
-    let linear = changed(folder.path(), |parts| {
+    let [out, whole] = ["out.vtu", "whole.vtu"].map(|name| folder.path().join(name));
+    let crossed = |parts: &mut Parts| {
         let wall = parts.blocks.iter().position(|block| is_wall(parts, block)).unwrap();
         parts.blocks[wall].nodes.swap(4, 5);
-        number = parts.blocks[wall].tags[1];
-    });
-    let out = folder.path().join("out.msh");
-    let told = sagitta(args!["curve", linear, "--cad", cad(), "--order", "2", "-o", out]).expect(2).stderr;
-    assert!(told.contains(&format!("their edges cross: quad {number};")), "{told}");
-    assert!(sagitta(args!["info", linear]).expect(0).stdout.contains(&format!("edges cross: {number}")));
+    };
+    let linear = changed(folder.path(), crossed);
+    let options = args!["--cad", cad(), "--order", "2", "-q"];
+    let told = sagitta(args!["curve", linear].iter().chain(&options).chain(&args!["-o", out])).expect(0).stdout;
+    assert!(told.contains("1 of 232 quad elements on the boundary had their corners in crossed order"), "{told}");
+    sagitta(args!["curve", mesh()].iter().chain(&options).chain(&args!["-o", whole])).expect(0);
+    let [out, whole] = [out, whole].map(|path| formats::read(&path).unwrap().points().to_vec());
+    assert!(out.iter().zip(&whole).all(|(a, b)| a.distance(*b) < 1e-12), "the same places");
+
+    let mut parts = formats::read(&mesh()).unwrap().into_parts();
+    crossed(&mut parts);
+    let model = cad::Model::read(&cad(), &cad::ReadOptions::default()).unwrap();
+    let settings = Settings::new(Order::new(2).unwrap());
+    let refused = sagitta::curve::curve(Mesh::new(parts).unwrap(), &model, None, &settings, &mut ()).unwrap_err();
+    assert!(refused.to_string().contains("their edges cross: quad "), "{refused}");
 }
 
-/// Cells that are there twice are refused; boundary elements that are there twice, or belong to no cell, and nodes without elements are told.
+/// Boundary elements that belong to no cell and nodes without elements are told.
 #[test]
-fn doubles_and_strays_are_told() {
+fn strays_are_told() {
     let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("out.msh");
-    let doubled = changed(folder.path(), |parts| {
-        let cells = parts.blocks.iter().position(|block| block.cell == Cell::Hex).unwrap();
-        let again = parts.blocks[cells].nodes[..8].to_vec();
-        parts.blocks[cells].nodes.extend(again);
-        parts.blocks[cells].tags.push(999_999);
-    });
-    let told = sagitta(args!["curve", doubled, "--cad", cad(), "--order", "2", "-o", out]).expect(2).stderr;
-    assert!(told.contains("the same corners as another one: hex 999999"), "{told}");
-
     let strays = changed(folder.path(), |parts| {
         let wall = parts.blocks.iter().position(|block| is_wall(parts, block)).unwrap();
         let cells = parts.blocks.iter().find(|block| block.cell == Cell::Hex).unwrap();
         let across = [cells.nodes[0], cells.nodes[1], cells.nodes[6], cells.nodes[7]];
-        let again = parts.blocks[wall].nodes[..4].to_vec();
         let own = &mut parts.blocks[wall];
-        own.nodes.extend(again.into_iter().chain(across));
-        own.tags.extend([999_998, 999_999]);
+        own.nodes.extend(across);
+        own.tags.push(999_999);
         parts.points.push(glam::DVec3::splat(0.1));
         parts.node_tags.push(999_999);
         parts.node_entities.push(None);
     });
-    let told = sagitta(args!["info", strays]).expect(0).stdout;
-    for finding in [
-        "1 boundary elements are no side of any cell: 999999",
-        "1 boundary elements have the corners of another one: 999998",
-        "1 nodes belong to no element: 999999",
-    ] {
-        assert!(told.contains(finding), "{finding}: {told}");
+    for command in ["info", "check"] {
+        let told = sagitta(args![command, strays]).expect(0).stdout;
+        for finding in ["1 boundary elements are no side of any cell: 999999", "1 nodes belong to no element: 999999"] {
+            assert!(told.contains(finding), "{finding}: {told}");
+        }
     }
 }
 

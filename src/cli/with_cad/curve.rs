@@ -105,7 +105,7 @@ pub(in crate::cli) struct Options {
     keep_invalid: bool,
     #[command(flatten)]
     form: Form,
-    /// Seconds after which smoothing ends; the mesh as it is then is certified and written
+    /// Seconds after which smoothing ends, at six tenths of them where elements are inverted, so that recovery has the rest; the mesh as it is then is certified and written
     #[arg(long, value_name = "S", value_parser = seconds)]
     time_limit: Option<f64>,
     /// Keep the state of the smoothing in this file, to resume from after a crash or the end of a job

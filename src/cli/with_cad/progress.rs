@@ -14,6 +14,9 @@ use crate::smooth::Progress;
 /// Plain lines come no more often than this.
 pub(super) const INTERVAL: Duration = Duration::from_secs(2);
 
+/// The share of a time limit after which smoothing ends while elements are inverted; the rest is left to recovery.
+const SMOOTHING: f64 = 0.6;
+
 /// Why smoothing ended before it was done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Stop {
@@ -38,6 +41,7 @@ pub(super) struct Monitor {
     bar: Option<ProgressBar>,
     quiet: bool,
     order: Option<Order>,
+    step: Option<Step>,
     start: Instant,
     smoothing: Option<Instant>,
     last: Option<Instant>,
@@ -47,7 +51,7 @@ impl Monitor {
     /// Begins to count the time.
     pub(super) fn new(quiet: bool) -> Monitor {
         let bar = (!quiet && std::io::stderr().is_terminal()).then(spinner);
-        Monitor { limit: None, stop: None, bar, quiet, order: None, start: Instant::now(), smoothing: None, last: None }
+        Monitor { limit: None, stop: None, bar, quiet, order: None, step: None, start: Instant::now(), smoothing: None, last: None }
     }
 
     /// Ends smoothing after a time limit, too.
@@ -93,7 +97,11 @@ impl Observer for Monitor {
         if step == Step::Smooth {
             self.smoothing = Some(Instant::now());
         }
+        self.step = Some(step);
         let order = self.order.map_or(String::new(), |order| format!(", {order}"));
+        if step == Step::Recover {
+            return self.show(format!("{}{order}", step.name()));
+        }
         self.show(format!("step {} of {}: {}{order}", step as usize + 1, Step::ALL.len(), step.name()));
     }
 
@@ -104,8 +112,9 @@ impl Observer for Monitor {
             let spent = self.smoothing.map_or(0.0, |start| start.elapsed().as_secs_f64());
             let left = spent / progress.sweep.max(1) as f64 * (progress.max_sweeps - progress.sweep) as f64;
             self.show(format!(
-                "smooth{}: stage {}, sweep {} of at most {}, {} active nodes, worst cost {:.4} near ({:.4}, {:.4}, {:.4}), \
+                "{}{}: stage {}, sweep {} of at most {}, {} active nodes, worst cost {:.4} near ({:.4}, {:.4}, {:.4}), \
                  {} inverted, at most {left:.0} s left",
+                self.step.map_or("smooth", Step::name),
                 self.order.map_or(String::new(), |order| format!(" {order}")),
                 progress.stage,
                 progress.sweep,
@@ -118,8 +127,14 @@ impl Observer for Monitor {
                 progress.inverted
             ));
         }
-        let over = self.limit.filter(|&limit| self.start.elapsed() >= limit).map(Stop::TimeLimit);
+        let share = if self.step == Some(Step::Smooth) && progress.inverted > 0 { SMOOTHING } else { 1.0 };
+        let is_over = |limit: &Duration| self.start.elapsed() >= limit.mul_f64(share);
+        let over = self.limit.filter(is_over).map(Stop::TimeLimit);
         self.stop = if signals::wished() { Some(Stop::Interrupted) } else { over };
         self.stop.is_none()
+    }
+
+    fn may_recover(&mut self) -> bool {
+        !signals::wished() && self.limit.is_none_or(|limit| self.start.elapsed() < limit)
     }
 }
