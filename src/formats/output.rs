@@ -28,7 +28,8 @@ pub(super) fn write(path: &Path, content: impl FnOnce(&mut Part) -> Result<(), U
     part.complete(&target).map_err(failed("write"))
 }
 
-/// Writes a file that is no mesh, as [`write()`] does.
+/// Writes a file that is no mesh: it appears under its name only when it is complete and on disk, and what killed runs left of it is
+/// removed. A file that it replaces hands its mode on.
 ///
 /// # Errors
 /// [`Error::Io`].
