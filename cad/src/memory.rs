@@ -8,7 +8,7 @@ const UNKNOWN: u64 = 8 << 30;
 pub fn half_of_machine() -> u64 {
     let info = rustix::system::sysinfo();
     let unit = u64::from(info.mem_unit.max(1));
-    let total = u64::try_from(info.totalram).unwrap_or(0).saturating_mul(unit);
+    let total = info.totalram.saturating_mul(unit);
     if total == 0 { UNKNOWN / 2 } else { total / 2 }
 }
 

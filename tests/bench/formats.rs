@@ -60,7 +60,7 @@ fn table() -> Result<(), Box<dyn Error>> {
 }
 
 fn row(name: &str, path: &Path, written: Option<f64>) -> Result<(), Box<dyn Error>> {
-    let options = ReadOptions { reader: Some(std::env::current_exe()?) };
+    let options = ReadOptions { reader: Some(std::env::current_exe()?), ..ReadOptions::default() };
     let read = best(|| {
         formats::read_with(path, &options)?;
         Ok(())

@@ -87,7 +87,7 @@ impl From<io::Error> for Stop {
 
 impl From<hdf5::Error> for Stop {
     fn from(error: hdf5::Error) -> Stop {
-        Stop::Input(error.to_string())
+        Stop::Input(format!("the HDF5 library cannot read it ({error}): the file is malformed"))
     }
 }
 
@@ -178,7 +178,9 @@ impl<W: Write, V: FnMut(&str)> Dump<'_, W, V> {
     /// Takes bytes of the room.
     fn take(&mut self, bytes: u64) -> Result<(), Stop> {
         let left = self.room.checked_sub(bytes);
-        self.room = left.ok_or_else(|| Stop::Input("its tree and arrays are far larger than the file".into()))?;
+        self.room = left.ok_or_else(|| {
+            Stop::Input("its tree and arrays are far larger than the file: it is damaged or hostile".into())
+        })?;
         Ok(())
     }
 
@@ -203,10 +205,9 @@ impl<W: Write, V: FnMut(&str)> Dump<'_, W, V> {
         // Numbers are handed on in 8 bytes at most.
         self.take((set.size() as u64).saturating_mul(8))?;
         match descriptor {
-            TypeDescriptor::Integer(IntSize::U1) | TypeDescriptor::Unsigned(IntSize::U1) => {
-                let text = set.read_raw::<u8>().or_else(|_| Ok::<_, hdf5::Error>(unsigned(set.read_raw::<i8>()?)))?;
-                self.array(kind::TEXT, &text)?;
-            }
+            // Read as the other kind, bytes above 127 would be cut to what it holds.
+            TypeDescriptor::Integer(IntSize::U1) => self.array(kind::TEXT, &unsigned(set.read_raw::<i8>()?))?,
+            TypeDescriptor::Unsigned(IntSize::U1) => self.array(kind::TEXT, &set.read_raw::<u8>()?)?,
             TypeDescriptor::Integer(IntSize::U4) => {
                 self.array(kind::INT, bytemuck::cast_slice(&set.read_raw::<i32>()?))?;
             }

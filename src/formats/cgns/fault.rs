@@ -5,8 +5,8 @@
 pub(super) enum CgnsFault {
     #[error("no {label} {name} in this node")]
     Missing { label: &'static str, name: &'static str },
-    #[error("the HDF5 library cannot read it ({0}): the file is malformed")]
-    Library(String),
+    #[error("{0}")]
+    Told(String),
     #[error("the HDF5 library failed at this node or behind it ({0}): the file is malformed")]
     Crash(String),
     #[error("its data are not {0}: the file is damaged")]
