@@ -18,7 +18,7 @@ SAGITTA := $(TARGET)/release/sagitta
 
 # The steps of a target run in their order, also under -j.
 .NOTPARALLEL:
-.PHONY: help setup setup-build build demo venv test lint unit examples fuzz bench oracle table engines picture bench-cases consumers figures reliability schema doc
+.PHONY: help setup setup-build build demo venv test lint unit examples fuzz bench oracle table engines picture bench-cases consumers figures reliability gauntlet-3d schema doc
 
 help: ## this list
 	@echo "sagitta curves linear viscous CFD meshes onto their CAD. Targets:"
@@ -95,6 +95,10 @@ picture: build venv ## the README's picture of the weeble: fixtures/pictures/wee
 consumers: setup build ## curved meshes given to Gmsh, meshio, MFEM, PyFR, PyHOPE, VTK and cgnscheck, and what they find; minutes
 	@WANTED=tests/consumers/requirements.txt VENV=.venv-consumers PYTHON="$(PYTHON)" .ci/venv
 	.venv-consumers/bin/python tests/consumers/consume.py $(SAGITTA) | tee $(TARGET)/consumers.md
+
+gauntlet-3d: build ## viscous meshes made on every CAD file in SAGITTA_CAD=DIR[:DIR], curved at P2 and P3, beside Gmsh; GAUNTLET_OPTIONS; an hour
+	@WANTED=tests/gauntlet/requirements.txt VENV=.venv-gauntlet PYTHON="$(PYTHON)" .ci/venv
+	.venv-gauntlet/bin/python tests/gauntlet/gauntlet_3d.py $(SAGITTA) "$(SAGITTA_CAD)" $(GAUNTLET_OPTIONS) | tee $(TARGET)/gauntlet_3d.md
 
 reliability: build ## kills at random times, full disks, signals in each step: what is left behind; root or `unshare -Urm`; 10 minutes
 	$(PYTHON) tests/reliability/harm.py $(SAGITTA)
