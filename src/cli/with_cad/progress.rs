@@ -51,7 +51,17 @@ impl Monitor {
     /// Begins to count the time.
     pub(super) fn new(quiet: bool) -> Monitor {
         let bar = (!quiet && std::io::stderr().is_terminal()).then(spinner);
-        Monitor { limit: None, stop: None, bar, quiet, order: None, step: None, start: Instant::now(), smoothing: None, last: None }
+        Monitor {
+            limit: None,
+            stop: None,
+            bar,
+            quiet,
+            order: None,
+            step: None,
+            start: Instant::now(),
+            smoothing: None,
+            last: None,
+        }
     }
 
     /// Ends smoothing after a time limit, too.
