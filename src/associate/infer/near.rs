@@ -5,10 +5,12 @@ use std::collections::BTreeSet;
 use cad::{EntityId, Evaluation, FaceId, Group, Model};
 use glam::DVec3;
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
 use super::Doubt;
 use super::faces::ALONG;
 use crate::associate::Side;
+use crate::associate::open::SMOOTH;
 use crate::mesh::{Boundary, Mesh};
 
 /// Corners of a face beside the CAD are nearer to it than this fraction of the face's longest edge.
@@ -38,14 +40,36 @@ pub(super) fn find(
         let distance = corners.fold(0.0, f64::max);
         (distance <= NEAR * side.size && is_nearest).then_some(Doubt::Beside { face: id, distance })
     };
-    doubts.par_iter_mut().for_each(|(face, doubt)| {
+    let found = |(face, doubt): &(usize, Doubt)| {
         let found = match doubt {
             Doubt::OffCad => beside(*face, (&bare, &covered)),
             Doubt::PartlyOffCad => beside(*face, (&bare, &covered)).or_else(|| beside(*face, (&covered, &bare))),
             _ => None,
         };
-        *doubt = found.unwrap_or_else(|| doubt.clone());
-    });
+        found.map(|found| (*face, found))
+    };
+    let found: FxHashMap<usize, Doubt> = doubts.par_iter().filter_map(found).collect();
+    let belongs = |face: usize| found.contains_key(&face) || classifications[face].is_some();
+    for (face, doubt) in doubts.iter_mut() {
+        if let Some(own) = found.get(face).filter(|_| most_neighbours(*face, boundary, sides, belongs)) {
+            *doubt = own.clone();
+        }
+    }
+}
+
+/// Whether something holds of at least half of the faces in which a face goes on smoothly: a single face may run beside the CAD by chance.
+fn most_neighbours(face: usize, boundary: &Boundary, sides: &[Side], holds: impl Fn(usize) -> bool) -> bool {
+    let corners = &boundary.corners[face];
+    let ends = corners.iter().zip(corners.iter().cycle().skip(1));
+    let edges = ends.filter_map(|(&a, &b)| boundary.edge([a, b]));
+    let (mut count, mut holding) = (0, 0);
+    for other in edges.flat_map(|edge| boundary.edge_faces[edge].iter().copied()) {
+        if other != face && sides[other].normal.dot(sides[face].normal) >= SMOOTH {
+            count += 1;
+            holding += usize::from(holds(other));
+        }
+    }
+    2 * holding >= count
 }
 
 /// The face of a group that a point stands over, off it along its normal, and how far; where the surface runs along the mesh face.
