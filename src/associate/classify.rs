@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use cad::{Aabb, EntityId, Kind, Model};
 use rustc_hash::FxHashSet;
 
-use super::open::SMOOTH;
+use super::side::SMOOTH;
 use super::witnesses::{combined, completed};
 use super::{
     AssociateError, Association, Candidates, Inference, Linkage, LinkageError, Tolerance, associate, infer, linked,

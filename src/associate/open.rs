@@ -6,11 +6,9 @@ use cad::Aabb;
 use glam::DVec3;
 use rustc_hash::FxHashSet;
 
+use super::side::SMOOTH;
 use super::{Association, Classification, Doubt, Inference, ON_CAD, sides};
 use crate::mesh::{Boundary, EntityKey, Mesh, NodeId};
-
-/// Two mesh faces go on in one another if the cosine between their normals is at least this.
-pub(super) const SMOOTH: f64 = 0.5;
 
 /// A boundary face that belongs to the CAD and stays straight.
 #[derive(Clone, Debug, PartialEq)]

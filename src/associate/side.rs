@@ -4,6 +4,9 @@ use glam::DVec3;
 
 use crate::mesh::{Boundary, Mesh, NodeId};
 
+/// Two mesh faces go on in one another if the cosine between their normals is at least this.
+pub(super) const SMOOTH: f64 = 0.5;
+
 /// A boundary face's place in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Side {

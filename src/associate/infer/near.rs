@@ -10,7 +10,7 @@ use rustc_hash::FxHashMap;
 use super::Doubt;
 use super::faces::ALONG;
 use crate::associate::Side;
-use crate::associate::open::SMOOTH;
+use crate::associate::side::SMOOTH;
 use crate::mesh::{Boundary, Mesh};
 
 /// Corners of a face beside the CAD are nearer to it than this fraction of the face's longest edge.
