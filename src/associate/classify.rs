@@ -8,8 +8,8 @@ use rustc_hash::FxHashSet;
 use super::side::SMOOTH;
 use super::witnesses::{combined, completed};
 use super::{
-    AssociateError, Association, Candidates, Inference, Linkage, LinkageError, Tolerance, associate, infer, linked,
-    sides,
+    AssociateError, Association, Candidates, Doubt, Inference, Linkage, LinkageError, Tolerance, associate, infer,
+    linked, sides,
 };
 use crate::mesh::{Boundary, EntityKey, Mesh};
 
@@ -94,23 +94,32 @@ impl Classifier<'_> {
     fn by_linkage(&self, linkage: &Linkage) -> Result<Classified, ClassifyError> {
         let (candidates, file) = (linked(linkage, self.mesh, self.boundary, self.model)?, linkage.file.display());
         let source = format!("linkage file {file}");
-        let mut by_file = self.held(candidates.clone(), None, source.clone())?;
+        let mut classified = self.held(candidates.clone(), None, source.clone())?;
+        let mut notes = Vec::new();
         if !candidates.trusted {
             let note = "names another CAD file; its references were looked up in the given one";
-            by_file.association.notes.push(format!("{file} {note}"));
+            notes.push(format!("{file} {note}"));
         }
-        if self.is_whole(&candidates) {
-            return Ok(by_file);
+        if !self.is_whole(&candidates) {
+            let inference = self.infer();
+            let completed = completed(&candidates, &inference, self.boundary, self.sources.straight);
+            let mut left = self.left(inference, &candidates);
+            if let Some((all, faces)) = completed {
+                let what = format!("{file} says nothing of {} boundary faces that lie on the CAD", faces.len());
+                match self.held(all, None, format!("{source}, and geometry")) {
+                    Ok(whole) => {
+                        classified = whole;
+                        notes.push(format!("{what}; geometry says where"));
+                    }
+                    Err(why) => {
+                        notes.push(format!("{what}, and what geometry says of them does not go with it: {why}"));
+                        left.faces.extend(faces.into_iter().map(|(face, on)| (face, Doubt::Unfit(on))));
+                    }
+                }
+            }
+            classified.inference = Some(left);
         }
-        let inference = self.infer();
-        let Some((all, count)) = completed(&candidates, &inference, self.boundary, self.sources.straight) else {
-            by_file.inference = Some(self.left(inference, &candidates));
-            return Ok(by_file);
-        };
-        let inference = self.left(inference, &candidates);
-        let mut classified = self.held(all, Some(inference), format!("{source}, and geometry"))?;
-        let note = format!("{file} says nothing of {count} boundary faces that lie on the CAD; geometry says where");
-        classified.association.notes.push(note);
+        classified.association.notes.extend(notes);
         Ok(classified)
     }
 

@@ -1,8 +1,8 @@
 //! Linkage, tags and geometry as witnesses of what lies on what: each face goes by the strongest one that holds.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
-use cad::Model;
+use cad::{EntityId, Model};
 use rustc_hash::FxHashSet;
 
 use super::{Candidate, Candidates, Inference, associate};
@@ -42,28 +42,28 @@ pub(super) fn combined(
     Some((candidates, if said.is_empty() { "geometry" } else { "geometry and the mesh's entity tags" }))
 }
 
-/// The candidates of a linkage file, and those of geometry for the faces of which it says nothing, with their number. `None` where geometry knows of none
-/// either.
+/// The candidates of a linkage file, and those of geometry for the faces of which it says nothing; and these faces, by index, with the CAD face of
+/// each. `None` where geometry knows of none either.
 pub(super) fn completed(
     linkage: &Candidates,
     inference: &Inference,
     boundary: &Boundary,
     straight: &BTreeSet<EntityKey>,
-) -> Option<(Candidates, usize)> {
+) -> Option<(Candidates, BTreeMap<usize, EntityId>)> {
     let said = linkage.linked_faces();
     let is_left = |face: &usize| !said.contains(face) && !straight.contains(&boundary.faces[*face].entity);
     let mut candidates = linkage.clone();
-    let mut left = FxHashSet::default();
+    let mut left = BTreeMap::new();
     for sheet in &inference.candidates.sheets {
         let items: Vec<usize> = sheet.items.iter().copied().filter(is_left).collect();
-        left.extend(items.iter().copied());
+        left.extend(sheet.entities.first().into_iter().flat_map(|&on| items.iter().map(move |&face| (face, on))));
         if !items.is_empty() {
             candidates.sheets.push(Candidate { items, ..sheet.clone() });
         }
     }
-    let beside = |edge: usize| boundary.edge_faces[edge].iter().any(|face| left.contains(face));
+    let beside = |edge: usize| boundary.edge_faces[edge].iter().any(|face| left.contains_key(face));
     add_edges(&mut candidates, inference, boundary, beside);
-    (!left.is_empty()).then_some((candidates, left.len()))
+    (!left.is_empty()).then_some((candidates, left))
 }
 
 /// Adds the mesh edges and points that geometry finds on CAD edges and vertices, but for those of which something is said already: at boundary edges

@@ -22,7 +22,7 @@ mod near;
 mod smooth_groups;
 mod volume_sides;
 
-use cad::{Aabb, FaceId, Model};
+use cad::{Aabb, EntityId, FaceId, Model};
 
 use super::{Candidates, Joints, Side, sides};
 use crate::mesh::{Boundary, Mesh};
@@ -113,6 +113,9 @@ pub enum Doubt {
     /// Several CAD faces hold it, and its neighbours do not decide which.
     #[error("it may lie on {}", list(.0))]
     SeveralFaces(Vec<FaceId>),
+    /// The linkage file says nothing of it, and where it lies by geometry does not go with the file.
+    #[error("the linkage file says nothing of it, and that it lies on {0} does not go with the file")]
+    Unfit(EntityId),
     /// It lies between faces on different CAD faces, but along none of their edges.
     #[error("it lies between {} and {}, but along no CAD edge that they share", .0[0], .0[1])]
     NoEdge([FaceId; 2]),
@@ -138,7 +141,7 @@ impl Doubt {
                     2.0 * distance
                 )
             }
-            Doubt::NoCommonFace | Doubt::SeveralFaces(_) | Doubt::NoEdge(_) => {
+            Doubt::NoCommonFace | Doubt::SeveralFaces(_) | Doubt::Unfit(_) | Doubt::NoEdge(_) => {
                 "say where it lies in a linkage file, or leave its patch straight by --straight".into()
             }
         }
