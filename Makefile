@@ -18,7 +18,7 @@ SAGITTA := $(TARGET)/release/sagitta
 
 # The steps of a target run in their order, also under -j.
 .NOTPARALLEL:
-.PHONY: help setup setup-build build demo venv test lint unit examples fuzz bench oracle table engines picture bench-cases consumers figures reliability gauntlet-3d schema doc
+.PHONY: help setup setup-build build demo venv test lint unit examples fuzz fuzz-coverage parsers bench oracle table engines picture bench-cases consumers figures reliability gauntlet-3d schema doc
 
 help: ## this list
 	@echo "sagitta curves linear viscous CFD meshes onto their CAD. Targets:"
@@ -73,6 +73,13 @@ examples: setup-build ## run the programs in examples/
 
 fuzz: setup-build ## 10 000 mutants of the samples of every format (SAGITTA_FUZZ=N, SAGITTA_SEED=N); a quarter of an hour
 	SAGITTA_FUZZ=$${SAGITTA_FUZZ:-10000} cargo test --release --test suite -- --exact fuzz_formats::damaged_files_are_answered --nocapture
+
+fuzz-coverage: setup-build ## every reader fuzzed by coverage (cargo-fuzz), FUZZ_SECONDS=120 each; installs cargo-fuzz where it is missing
+	fuzz/run $${FUZZ_SECONDS:-120}
+
+parsers: setup-build ## sagitta's readers beside strict parsers of other code, on 2 000 mutants of each format (MUTANTS=N); minutes
+	cargo build --release --manifest-path fuzz/Cargo.toml --bin account
+	$(PYTHON) tests/reliability/agree.py fuzz/target/release/account --mutants $${MUTANTS:-2000}
 
 bench: build ## benchmarks; minutes, not a test
 	cargo bench --bench curve

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 const INCLUDE_DIRS: [&str; 3] =
     ["/usr/include/opencascade", "/usr/local/include/opencascade", "/opt/include/opencascade"];
-const SHIM: [&str; 5] = ["geometry", "shape", "instances", "import", "oracle"];
+const SHIM: [&str; 6] = ["geometry", "shape", "instances", "import", "oracle", "place"];
 
 fn main() {
     println!("cargo:rerun-if-env-changed=OCCT_INCLUDE_DIR");

@@ -36,6 +36,9 @@ const GRACE: Duration = Duration::from_secs(2);
 /// Time between two looks of the child at its parent and the clock.
 const LOOK: Duration = Duration::from_millis(500);
 
+/// Time in which a child that hangs can say where it stands.
+const ANSWER: Duration = Duration::from_millis(100);
+
 /// Signals that a process is sent for what itself does: SIGILL, SIGTRAP, SIGABRT, SIGBUS, SIGFPE, SIGSEGV, SIGSYS.
 const OWN_FAULTS: [i32; 7] = [4, 5, 6, 7, 8, 11, 31];
 
@@ -141,6 +144,7 @@ pub fn run(
     });
     let listening = std::thread::spawn(move || warnings_in(errors));
     let Ok(bytes) = receiver.recv_timeout(limits.timeout) else {
+        ask_for_place(&child);
         end(&mut child);
         let _ = reading.join();
         return Err(ChildError::TimedOut { warnings: listening.join().unwrap_or_default() });
@@ -168,6 +172,13 @@ fn warnings_in(mut errors: impl Read) -> Vec<String> {
     let _ = io::copy(&mut errors, &mut io::sink());
     let text = String::from_utf8_lossy(&bytes);
     text.lines().filter_map(|line| line.strip_prefix(WARNING_PREFIX)).map(str::to_owned).collect()
+}
+
+/// Has a child that hangs say where it stands, as a last warning; one that cannot ends.
+fn ask_for_place(child: &Child) {
+    if kill_process(Pid::from_child(child), Signal::XCPU).is_ok() {
+        std::thread::sleep(ANSWER);
+    }
 }
 
 /// Ends the child with what it may have started, and collects it; it may have ended by itself meanwhile.

@@ -7,7 +7,7 @@ use glam::DVec3;
 use rustc_hash::FxHashMap;
 
 use super::sizes::check_boxes;
-use super::{AssociateError, Association, Candidate, Candidates, Classification, Curve, Surface};
+use super::{AssociateError, Association, Candidate, Candidates, Classification, Curve, Surface, Teller};
 use crate::mesh::{Boundary, EntityKey, Mesh, NodeId, Plane};
 
 /// A point this near to a CAD entity lies on it; fraction of the model's diagonal.
@@ -27,7 +27,11 @@ pub fn associate(
 ) -> Result<Association, AssociateError> {
     let faces_linked = candidates.sheets.iter().filter(|s| !s.entities.is_empty()).count();
     if faces_linked == 0 {
-        return Err(AssociateError::Nothing { surfaces: candidates.sheets.len(), faces: model.faces().len() });
+        return Err(AssociateError::Nothing {
+            surfaces: candidates.sheets.len(),
+            faces: model.faces().len(),
+            teller: candidates.teller,
+        });
     }
     let limit = max_offset * Aabb::of_points(mesh.points().iter().copied()).diagonal();
     let slack = ON_ENTITY * model.diagonal();
@@ -35,6 +39,7 @@ pub fn associate(
         mesh,
         boundary,
         model,
+        teller: candidates.teller,
         limit,
         slack,
         result: Association::default(),
@@ -53,6 +58,7 @@ struct Binder<'a> {
     mesh: &'a Mesh,
     boundary: &'a Boundary,
     model: &'a Model,
+    teller: Teller,
     /// How far a point may be from what it is associated with.
     limit: f64,
     /// How far a point may be from what it *lies on*; grows with the offsets that the surfaces show.
@@ -113,7 +119,7 @@ impl Binder<'_> {
         let off = farthest > ON_ENTITY * self.model.diagonal();
         if let Some(other) = (off && !trusted).then(|| self.face_that_holds(&nodes)).flatten() {
             let (label, entities) = (sheet.label.clone(), names(&entities));
-            return Err(AssociateError::Elsewhere { label, entities, other: other.to_string() });
+            return Err(AssociateError::Elsewhere { label, entities, other: other.to_string(), teller: self.teller });
         }
         // Noise that the surfaces show must be granted to the edges too.
         self.slack = self.slack.max(4.0 * farthest);
@@ -154,6 +160,7 @@ impl Binder<'_> {
                 at: places[worst],
                 distance: distances[worst],
                 limit: self.limit,
+                teller: self.teller,
             });
         }
         Ok(distances[worst])
@@ -296,7 +303,13 @@ impl Binder<'_> {
                     _ => "a patch that is not associated with the CAD".to_owned(),
                 };
                 let other = classifications.iter().find(|&&h| h != first);
-                Err(AssociateError::NoCurve { a, b, first: label(Some(&first)), second: label(other) })
+                Err(AssociateError::NoCurve {
+                    a,
+                    b,
+                    first: label(Some(&first)),
+                    second: label(other),
+                    teller: self.teller,
+                })
             }
         }
     }

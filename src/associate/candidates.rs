@@ -17,6 +17,18 @@ pub struct Candidate<T> {
     pub entities: Vec<EntityId>,
 }
 
+/// Who says it, and so what can be done where it is wrong.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Teller {
+    /// The mesh's entity tags.
+    #[default]
+    Tags,
+    /// A linkage file.
+    Linkage,
+    /// The mesh's place beside the CAD.
+    Geometry,
+}
+
 /// All that is said.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Candidates {
@@ -32,6 +44,8 @@ pub struct Candidates {
     pub notes: Vec<String>,
     /// Whether the CAD is the file that the candidates were made for.
     pub trusted: bool,
+    /// Who says it; what geometry adds to what others say is theirs.
+    pub teller: Teller,
 }
 
 impl Candidates {

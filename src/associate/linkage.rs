@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use cad::{EntityId, Model, ReferenceError};
 use linkage_schema::{Document, Entity, GeometryFile, ModelLinks, Resolution, Target};
 
-use super::{Candidate, Candidates, NotPeriodic, Numbering, Part, UnknownZone, periodic_records, periodic_sheets};
+use super::{
+    Candidate, Candidates, NotPeriodic, Numbering, Part, Teller, UnknownZone, periodic_records, periodic_sheets,
+};
 use crate::element::Cell;
 use crate::mesh::{Boundary, EntityKey, Mesh, NodeId};
 
@@ -126,7 +128,7 @@ pub fn linked(linkage: &Linkage, mesh: &Mesh, boundary: &Boundary, model: &Model
     let geometry = own_geometry(document, model.path());
     let reader = Reader { path, mesh, boundary, model, numbering: &numbering, geometry: &geometry, part: Part::Whole };
     let trusted = document.geometry_files.iter().any(|file| same_file(&file.filename, model.path()));
-    let mut candidates = Candidates { trusted, ..Candidates::default() };
+    let mut candidates = Candidates { trusted, teller: Teller::Linkage, ..Candidates::default() };
     candidates.notes.extend(not_given(path, document, &geometry));
     for links in models {
         reader.within(links)?.model(links, &mut candidates)?;

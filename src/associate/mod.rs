@@ -37,7 +37,7 @@ use cad::Group;
 use crate::mesh::Plane;
 
 pub use bind::associate;
-pub use candidates::{Candidate, Candidates};
+pub use candidates::{Candidate, Candidates, Teller};
 pub use choice::{Choice, UnknownPatch};
 pub use classify::{Classified, ClassifyError, Sources, classify};
 pub use document::{TooLarge, Written, document};

@@ -158,7 +158,7 @@ fn a_damaged_file_is_refused_in_this_process_too() {
     let path = folder.path().join("cut.cgns");
     std::fs::write(&path, &whole[..whole.len() / 2]).unwrap();
     let told = formats::read(&path).unwrap_err().to_string();
-    assert!(told.contains("cut.cgns: the HDF5 library cannot read it"), "{told}");
+    assert!(told.contains("the file ends here"), "{told}");
 }
 
 #[test]

@@ -441,3 +441,45 @@ fn foreign_meshes_are_named_with_a_remedy() {
         }
     }
 }
+
+/// What is behind a damaged keyword or tag is not read: that is told, or the file refused, where it is part of the mesh.
+#[test]
+fn what_a_damaged_keyword_would_lose_is_told() {
+    let place = Place::new();
+    let vtu = text("hexpyrtet_p1_ascii.vtu");
+    for (from, to, needle) in [
+        (" NumberOfCells=\"220\"", "", "NumberOfCells"),
+        (" NumberOfPoints=\"67\"", " Number", "XML is damaged"),
+        // Which version it is decides on the order of a hex' nodes.
+        ("version=\"1.0\"", "\"1.0\"", "XML is damaged"),
+        ("<Points>", "<Points>0.5", "expected a tag, found \"0.5\""),
+        ("</VTKFile>", "</VTKFile><VTKFile></VTKFile>", "behind the end"),
+    ] {
+        let at = vtu.find("<VTKFile").unwrap(); // the XML's own version stands before
+        place.refuses("tag.vtu", [&vtu[..at], &with(&vtu[at..], from, to)].concat(), &["byte", needle]);
+    }
+    let vtk = text("hexpyrtet_p1.vtk");
+    place.refuses("version.vtk", with(&vtk, "Version 2.0", "Ver"), &["line 1", "Version"]);
+    let missing = |section: &str| format!("the section {section} is missing");
+    place.refuses("head.vtk", &vtk[..vtk.find("POINTS").unwrap()], &["line", &missing("POINTS")]);
+    place.refuses("points.vtk", &vtk[..vtk.find("CELLS").unwrap()], &["line", &missing("CELLS")]);
+    place.refuses("types.vtk", &vtk[..vtk.find("CELL_TYPES").unwrap()], &["line", &missing("CELL_TYPES")]);
+    let su2 = text("hexpyrtet_p1.su2");
+    place.refuses("twice.su2", with(&su2, "NDIME= 3", "NDIME= 3\nNDIME= 2"), &["line 2", "NDIME= stands twice"]);
+    let (cells, points) = (su2.find("NELEM").unwrap(), su2.find("NPOIN").unwrap());
+    place.refuses("none.su2", [&su2[..cells], &su2[points..]].concat(), &["NELEM= is missing"]);
+    let msh = text("hexpyrtet_p1_msh41a.msh");
+    place.refuses("name.msh", with(&msh, "\"wall\"", "\"wall\" 1"), &["line 7", "quoted name"]);
+    let row = msh.lines().skip_while(|line| *line != "$Entities").nth(2).unwrap();
+    let spoilt = with(row, row.split(' ').nth(2).unwrap(), "nan");
+    place.refuses("box.msh", with(&msh, row, &spoilt), &["an entity's box", "NaN"]);
+    let notes = |name: &str, content: String| place.read(name, content).unwrap().notes().join("; ");
+    let renamed = with(&with(&msh, "$PhysicalNames", "$PhysicalName"), "$EndPhysicalNames", "$EndPhysicalName");
+    assert!(notes("section.msh", renamed).contains("a section $PhysicalName, which is not known, is not used"));
+    let gmf = text("hexpyrtet_p1.mesh");
+    let told = notes("word.mesh", with(&gmf, "Tetrahedra", "Tetrahedro"));
+    assert!(told.contains("the keyword Tetrahedro, which is not known, is not used"), "{told}");
+    let told = notes("end.mesh", gmf[..gmf.rfind("End").unwrap()].to_owned());
+    assert!(told.contains("no keyword End"), "{told}");
+    assert!(!notes("whole.mesh", gmf).contains("keyword"));
+}

@@ -1,6 +1,7 @@
 #include "import.hxx"
 #include "guard.hxx"
 #include "instances.hxx"
+#include "place.hxx"
 #include "opencascade-sys/src/lib.rs.h"
 
 #include <BRepBuilderAPI_Transform.hxx>
@@ -311,6 +312,7 @@ void read_brep(const std::string& path, Source& source) {
     return "line " + std::to_string(lines) + ": ";
   };
   BRep_Builder builder;
+  const Standing standing(input.rdbuf(), path.c_str());
   try {
     BRepTools::Read(source.shape, input, builder);
   } catch (const Standard_Failure& failure) {

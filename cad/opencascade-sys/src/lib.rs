@@ -112,6 +112,7 @@ mod ffi {
     unsafe extern "C++" {
         include!("import.hxx");
         include!("oracle.hxx");
+        include!("place.hxx");
 
         type Surface;
         type Curve;
@@ -154,6 +155,10 @@ mod ffi {
         /// Coordinates come in the unit of the file times `scale`. Turns OCCT's own messages off for the whole process.
         /// With `announce`, what [`Import::warnings`] tells is written to standard error as well, before OCCT goes on to use it.
         fn read_file(path: &str, format: Format, scale: f64, announce: bool) -> Result<UniquePtr<Import>>;
+        /// From here on a crash of this process is told of on standard error, with the place: for a process that does nothing but read.
+        fn tell_crashes();
+        /// The place that is told if OCCT crashes from here on.
+        fn stand_at(entity: &str);
         fn shape(self: &Import) -> &Shape;
         fn unit(self: &Import) -> String;
         fn millimetres_per_unit(self: &Import) -> f64;
@@ -174,7 +179,7 @@ mod ffi {
 pub use cxx::{Exception, UniquePtr};
 pub use ffi::{
     Coedge, Curve, EdgeData, FaceData, Form, Format, Import, Kind, Label, Loops, Oracle, Pcurve, Shape, Spans, Surface,
-    VertexData, oracle, read_file, shape_from_bytes,
+    VertexData, oracle, read_file, shape_from_bytes, stand_at, tell_crashes,
 };
 
 // SAFETY (the three types below): each holds one `Handle(Geom_*)` or `Handle(Geom2d_*)` that is never replaced or edited after

@@ -27,6 +27,7 @@ pub(crate) const SCALE_VARIABLE: &str = "SAGITTA_READER_SCALE";
 /// standard output. Nothing else reaches standard output, whatever OCCT prints.
 pub fn serve_reader(path: &Path) -> ExitCode {
     child::keep_to_limits();
+    sys::tell_crashes();
     let Some(out) = child::take_stdout() else { return ExitCode::FAILURE };
     let (answer, shape) = match rehearsed(path) {
         Ok((description, shape)) => (Answer::Model(description), shape),
@@ -46,6 +47,7 @@ fn scale() -> f64 {
 fn rehearsed(path: &Path) -> Result<(Description, Vec<u8>), String> {
     let scale = scale();
     let Parsed { description, shape, bytes } = parse(path, scale, true)?;
+    sys::stand_at("the shapes");
     let model = assemble::model(path, &shape, description.clone(), scale)?;
     check(&model)?;
     rehearse(&model);
@@ -161,6 +163,7 @@ fn check(model: &Model) -> Result<(), String> {
 /// Does on every entity what the parent's queries do, so that what makes OCCT crash does it here.
 fn rehearse(model: &Model) {
     for face in model.faces() {
+        sys::stand_at(&face.id.to_string());
         let [u, v] = face.parameters;
         for (s, t) in
             [(u[0], v[0]), (u[1], v[0]), (u[0], v[1]), (u[1], v[1]), (0.5 * (u[0] + u[1]), 0.5 * (v[0] + v[1]))]
@@ -177,6 +180,7 @@ fn rehearse(model: &Model) {
         }
     }
     for edge in model.edges() {
+        sys::stand_at(&edge.id.to_string());
         for t in edge.parameters {
             let _ = model.evaluate(edge.id.into(), [t, 0.0]);
         }

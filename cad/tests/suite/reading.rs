@@ -224,6 +224,19 @@ fn a_hang_names_the_suspects() {
     assert!(error.to_string().contains("step:#15: malformed"), "{error}");
 }
 
+/// Numbers of BREP files are counts of what follows; OCCT reads on behind the end of the file.
+#[test]
+fn a_hang_in_brep_names_the_line() {
+    let text = std::fs::read_to_string(crate::common::shape_path("plate.brep")).unwrap();
+    let count = text.lines().find(|line| line.starts_with("Surfaces ")).unwrap();
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("count.brep");
+    std::fs::write(&path, text.replacen(count, "Surfaces 2000000000", 1)).unwrap();
+    let hasty = by(Reader { timeout: Duration::from_secs(2), ..reader() });
+    let told = Model::read(&path, &hasty).unwrap_err().to_string();
+    assert!(told.contains("count.brep") && told.contains("line "), "{told}");
+}
+
 /// An entity that refers to a missing one makes OCCT 7.6 dereference null.
 #[test]
 fn dangling_references_do_not_end_the_parent() {

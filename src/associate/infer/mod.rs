@@ -24,7 +24,7 @@ mod volume_sides;
 
 use cad::{Aabb, EntityId, FaceId, Model};
 
-use super::{Candidates, Joints, Side, sides};
+use super::{Candidates, Joints, Side, Teller, sides};
 use crate::mesh::{Boundary, Mesh};
 pub use incidence::Incidence;
 use volume_sides::VolumeSides;
@@ -206,8 +206,12 @@ fn infer_within(
     let decided = faces::decide(mesh, boundary, joints, &incidence, &along, sides, told);
     let (classifications, mut doubts) = smooth_groups::join(boundary, model, joints, &incidence, sides, decided);
     near::find(model, boundary, mesh, sides, &classifications, &mut doubts);
-    let mut candidates =
-        Candidates { trusted: true, sheets: faces::sheets(mesh, boundary, &classifications), ..Candidates::default() };
+    let mut candidates = Candidates {
+        trusted: true,
+        teller: Teller::Geometry,
+        sheets: faces::sheets(mesh, boundary, &classifications),
+        ..Candidates::default()
+    };
     let strings = edges::strings(boundary, model, joints, &along, &classifications);
     candidates.points = edges::points(boundary, model, &incidence, &strings);
     candidates.strings = strings.candidates;

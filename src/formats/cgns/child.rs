@@ -44,7 +44,11 @@ pub fn serve_reader(path: &Path) -> ExitCode {
 /// # Errors
 /// [`Error`]: also where the library crashed or hung.
 pub(super) fn ask(program: &Path, path: &Path, file: &Path, length: u64, memory: u64) -> Result<Vec<u8>, Error> {
-    let refused = |reason: String| Error::Format { file: path.to_path_buf(), reason };
+    // The child tells of each node before it looks at it.
+    let flaw = |nodes: &[String], fault: CgnsFault| {
+        let node = nodes.last().cloned().unwrap_or_else(|| "/".to_owned());
+        Flaw::new(Place::Node(node), fault).of(path)
+    };
     let room = dump::room(length, memory);
     let limits = Limits {
         timeout: Duration::from_secs(SECONDS + length / 10_000_000),
@@ -54,13 +58,8 @@ pub(super) fn ask(program: &Path, path: &Path, file: &Path, length: u64, memory:
     let outcome =
         run(program, READER_SUBCOMMAND, file, &[(ROOM_VARIABLE, memory.to_string())], limits).map_err(|error| {
             match error {
-                ChildError::TimedOut { .. } => refused(format!(
-                    "reading took longer than {} s and was ended: a malformed file",
-                    limits.timeout.as_secs()
-                )),
-                ChildError::TooMuch => {
-                    refused(format!("reading it gives more than {} MB: a malformed file", limits.output >> 20))
-                }
+                ChildError::TimedOut { warnings } => flaw(&warnings, CgnsFault::Slow(limits.timeout.as_secs())),
+                ChildError::TooMuch => flaw(&[], CgnsFault::TooMuch(limits.output >> 20)),
                 ChildError::Run(source) => {
                     let what = format!("the reading process {} cannot be run: {source}", program.display());
                     Error::Io { file: path.to_path_buf(), action: "read", source: std::io::Error::other(what) }
@@ -74,12 +73,7 @@ pub(super) fn ask(program: &Path, path: &Path, file: &Path, length: u64, memory:
     match (outcome.status.success(), outcome.status.signal()) {
         (true, _) => Ok(outcome.bytes),
         // Rust's allocator aborts where it gets no memory.
-        (_, Some(6)) => {
-            Err(refused(format!("reading needs more than {} MB of memory: a malformed file", limits.memory >> 20)))
-        }
-        _ => {
-            let node = outcome.warnings.last().cloned().unwrap_or_else(|| "/".to_owned());
-            Err(Flaw::new(Place::Node(node), CgnsFault::Crash(outcome.status.to_string())).of(path))
-        }
+        (_, Some(6)) => Err(flaw(&outcome.warnings, CgnsFault::Memory(limits.memory >> 20))),
+        _ => Err(flaw(&outcome.warnings, CgnsFault::Crash(outcome.status.to_string()))),
     }
 }

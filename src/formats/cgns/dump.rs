@@ -55,10 +55,11 @@ pub(super) fn write(path: &Path, room: u64, out: &mut impl Write, visit: impl Fn
             match dump.children(&file, 0) {
                 Ok(()) => None,
                 Err(Stop::Output(error)) => return Err(error),
+                Err(Stop::Input(cause)) if dump.path.is_empty() => Some(("/".to_owned(), cause)),
                 Err(Stop::Input(cause)) => Some((dump.path, cause)),
             }
         }
-        Err(error) => Some((String::new(), error.to_string())),
+        Err(error) => Some((String::new(), error.to_string())), // no node: the library refuses the file's head
     };
     match told {
         None => out.write_all(labels::TREE)?, // an answer without its end was cut off

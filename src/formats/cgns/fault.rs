@@ -1,5 +1,7 @@
 //! What is wrong with a CGNS file's content.
 
+use crate::formats::error::{Flaw, Place};
+
 /// What can be wrong with a node of a CGNS file beside what can be wrong with any file.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum CgnsFault {
@@ -7,6 +9,16 @@ pub(super) enum CgnsFault {
     Missing { label: &'static str, name: &'static str },
     #[error("{0}")]
     Told(String),
+    #[error("the file ends here, and its head says that it has {0} bytes: it was cut off; copy or write it again")]
+    Cut(u64),
+    #[error("the HDF5 library cannot read the head of the file: {0}")]
+    Head(String),
+    #[error("reading took longer than {0} s and was ended at this node: a malformed file")]
+    Slow(u64),
+    #[error("reading needs more than {0} MB of memory from this node on: a malformed file")]
+    Memory(u64),
+    #[error("reading it gives more than {0} MB: a malformed file")]
+    TooMuch(u64),
     #[error("the HDF5 library failed at this node or behind it ({0}): the file is malformed")]
     Crash(String),
     #[error("its data are not {0}: the file is damaged")]
@@ -46,3 +58,12 @@ pub(super) enum CgnsFault {
 }
 
 crate::formats::error::own!(CgnsFault);
+
+/// What the library says of a file that it does not open, with the place: where the file ends, if it is too short, else its head.
+pub(super) fn unopened(cause: &str) -> Flaw {
+    let number = |name: &str| cause.split(name).nth(1)?.split(|c: char| !c.is_ascii_digit()).next()?.parse().ok();
+    match (number(" eof = "), number("stored_eof = ")) {
+        (Some(end), Some(announced)) => Flaw::new(Place::Byte(end), CgnsFault::Cut(announced)),
+        _ => Flaw::new(Place::Byte(0), CgnsFault::Head(cause.to_owned())),
+    }
+}

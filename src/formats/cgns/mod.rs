@@ -94,9 +94,7 @@ fn hdf5(path: &Path, file: &Path, length: u64, options: &ReadOptions) -> Result<
         }
     };
     let tree = tree::Tree::parse(&bytes).map_err(|failure| match failure {
-        tree::Failure::Told { node, cause } if node.is_empty() => {
-            refused(format!("the HDF5 library cannot read it: {cause}"))
-        }
+        tree::Failure::Told { node, cause } if node.is_empty() => fault::unopened(&cause).of(path),
         tree::Failure::Told { node, cause } => Flaw::new(Place::Node(node), CgnsFault::Told(cause)).of(path),
         tree::Failure::Cut => {
             refused("the reading process gave no whole answer; does it call cgns::serve_reader?".into())

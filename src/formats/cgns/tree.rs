@@ -24,7 +24,7 @@ pub(super) struct Tree<'a> {
 /// Why an answer holds no tree.
 #[derive(Debug)]
 pub(super) enum Failure {
-    /// The library said why, perhaps in a node.
+    /// The library said why, in a node; of a file that it does not open there is none.
     Told { node: String, cause: String },
     /// The answer ends too early.
     Cut,

@@ -20,6 +20,8 @@ pub(super) fn mesh(mut source: Source<impl BufRead>) -> Result<Mesh, Flaw> {
     while let Some(keyword) = source.keyword()? {
         draft.section(&mut source, keyword)?;
     }
+    draft.unknown = std::mem::take(&mut source.unknown);
+    draft.ended = source.ended;
     draft.mesh().map_err(|fault| source.flaw(fault))
 }
 
@@ -37,6 +39,10 @@ struct Draft {
     bezier: bool,
     /// Keywords of no use, and how many rows they have.
     unused: Vec<(&'static str, usize)>,
+    /// Keywords that are not known: they may be others, misspelt.
+    unknown: Vec<String>,
+    /// Whether the file has its `End`.
+    ended: bool,
 }
 
 /// Elements of one keyword.
@@ -216,6 +222,11 @@ impl Draft {
         }
         for (word, count) in self.unused.iter().filter(|(_, count)| *count > 0) {
             assembly.parts.notes.push(format!("{count} {word} are not used"));
+        }
+        let told = self.unknown.iter().map(|word| format!("the keyword {word}, which is not known, is not used"));
+        assembly.parts.notes.extend(told);
+        if !self.ended {
+            assembly.parts.notes.push("the file has no keyword End: it may have been cut off".into());
         }
         association::apply(&mut assembly, self.on_geometry, &self.corners);
         assembly.finish()

@@ -8,11 +8,18 @@ use super::keyword::Keyword;
 use crate::formats::error::{Fault, Flaw};
 use crate::formats::scanner::Scanner;
 
+/// Keywords that are not known of which is told.
+const UNKNOWN: usize = 10;
+
 /// A file being read.
 pub(super) struct Source<R> {
     scanner: Scanner<R>,
     length: u64,
     form: Form,
+    /// Keywords that are not known, as words or numbers.
+    pub(super) unknown: Vec<String>,
+    /// Whether the keyword `End` was met.
+    pub(super) ended: bool,
 }
 
 enum Form {
@@ -40,7 +47,8 @@ impl<R: BufRead> Source<R> {
     /// A text of a known length; its version says nothing about how it is written.
     pub(super) fn text(input: R, length: u64) -> Result<Source<R>, Flaw> {
         let form = Form::Text { complete: false };
-        let mut source = Source { scanner: Scanner::new(input, length), length, form };
+        let mut source =
+            Source { scanner: Scanner::new(input, length), length, form, unknown: Vec::new(), ended: false };
         let what = "MeshVersionFormatted";
         let mut word = source.scanner.word(what)?.to_owned();
         while word.starts_with('#') {
@@ -64,7 +72,7 @@ impl<R: BufRead> Source<R> {
         scanner.binary = true;
         let swap = u32::from_le_bytes(scanner.bytes("the byte order")?) != MARK;
         let layout = Layout { version: 0, swap, short_reals: false, end: 0, last: false };
-        let mut source = Source { scanner, length, form: Form::Bytes(layout) };
+        let mut source = Source { scanner, length, form: Form::Bytes(layout), unknown: Vec::new(), ended: false };
         let version = u32::from_le_bytes(source.raw("the version")?);
         if !VERSIONS.contains(&version) {
             return Err(source.flaw(GmfFault::Version(version.into())));
@@ -86,6 +94,7 @@ impl<R: BufRead> Source<R> {
             Form::Text { .. } => self.word()?,
             Form::Bytes(_) => self.code()?,
         };
+        self.ended |= keyword == Some(Keyword::End);
         Ok(keyword.filter(|&keyword| keyword != Keyword::End))
     }
 
@@ -107,6 +116,9 @@ impl<R: BufRead> Source<R> {
                 return Err(self.flaw(Fault::Unexpected { what, found }));
             }
             *complete = keyword.is_some();
+            if keyword.is_none() && first.is_alphabetic() {
+                self.tell_unknown(found);
+            }
             if keyword.is_some() {
                 return Ok(keyword);
             }
@@ -136,6 +148,14 @@ impl<R: BufRead> Source<R> {
             if let Some(keyword) = Keyword::of_code(code) {
                 return Ok(Some(keyword));
             }
+            self.tell_unknown(code.to_string());
+        }
+    }
+
+    /// Keeps a keyword that is not known, each once and not many of them.
+    fn tell_unknown(&mut self, keyword: String) {
+        if self.unknown.len() < UNKNOWN && !self.unknown.contains(&keyword) {
+            self.unknown.push(keyword);
         }
     }
 

@@ -39,7 +39,26 @@ impl ElementType {
     }
 }
 
+/// Sections of Gmsh's that say nothing of the mesh.
+const BESIDE: [&str; 7] = [
+    "Comments",
+    "NodeData",
+    "ElementData",
+    "ElementNodeData",
+    "InterpolationScheme",
+    "GhostElements",
+    "Parametrizations",
+];
+
 impl Draft {
+    /// Notes a section that is not read, unless it is known to say nothing of the mesh: it may be one of those that are, misspelt.
+    pub(super) fn pass_over(&mut self, section: &str) {
+        if !BESIDE.contains(&section) {
+            let name: String = section.chars().take(40).collect();
+            self.parts.notes.push(format!("a section ${name}, which is not known, is not used"));
+        }
+    }
+
     /// The entity of the unpartitioned mesh.
     pub(super) fn parent(&self, key: EntityKey) -> EntityKey {
         self.parents.get(&key).copied().unwrap_or(key)

@@ -83,6 +83,7 @@ pub fn read(input: impl BufRead, length: u64) -> Result<Mesh, Flaw> {
             return Err(scanner.flaw(Fault::Unexpected { what: "a section's name, as $Nodes", found }));
         };
         let Some(&section) = SECTIONS.iter().find(|&&section| section == name) else {
+            draft.pass_over(name);
             scanner.skip_section(name)?;
             continue;
         };

@@ -31,11 +31,8 @@ fn parse(line: &str) -> Option<PhysicalName> {
     let mut numbers = line[..open].split_ascii_whitespace();
     let dimension = numbers.next()?.parse().ok().filter(|&d| d <= 3)?;
     let tag = numbers.next()?.parse().ok()?;
-    (numbers.next().is_none() && close > open).then(|| PhysicalName {
-        dimension,
-        tag,
-        name: line[open + 1..close].into(),
-    })
+    let whole = numbers.next().is_none() && close > open && line[close + 1..].trim().is_empty();
+    whole.then(|| PhysicalName { dimension, tag, name: line[open + 1..close].into() })
 }
 
 /// Writes the section, where there are names.

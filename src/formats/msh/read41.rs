@@ -68,6 +68,9 @@ fn entity_counts(source: &mut impl Source) -> Result<[(u8, usize); 4], Flaw> {
 fn entity_body(source: &mut impl Source, key: EntityKey) -> Result<Entity, Flaw> {
     let lower = source.reals::<3>("an entity's box")?;
     let upper = if key.dimension == 0 { lower } else { source.reals::<3>("an entity's box")? };
+    if let Some(wrong) = lower.iter().chain(&upper).find(|x| !x.is_finite()) {
+        return Err(source.flaw(Fault::Number { what: "an entity's box", found: wrong.to_string() }));
+    }
     let physical_tags = source.ints("physical tags")?;
     let boundary = if key.dimension == 0 { Vec::new() } else { source.ints("bounding entities")? };
     Ok(Entity { key, bounds: [lower, upper], physical_tags, boundary })

@@ -124,7 +124,9 @@ impl<R: BufRead> File<R> {
                         return Err(self.flaw(Fault::Number { what: "the dimension, 2 or 3", found }));
                     }
                 };
-                self.zone().dimension = Some(dimension);
+                if self.zone().dimension.replace(dimension).is_some() {
+                    return Err(self.flaw(Su2Fault::Repeated("NDIME")));
+                }
             }
             "NELEM" => {
                 let dimension = self.dimension("NELEM")?;
@@ -137,7 +139,9 @@ impl<R: BufRead> File<R> {
             "NPOIN" => self.read_points(value)?,
             "NMARK" => {
                 let count = self.number("the number of markers", value)?;
-                self.zone().announced = Some(count);
+                if self.zone().announced.replace(count).is_some() {
+                    return Err(self.flaw(Su2Fault::Repeated("NMARK")));
+                }
             }
             "MARKER_TAG" => self.marker(value, notes)?,
             _ => self.pass_over(key, notes),
@@ -275,6 +279,9 @@ impl<R: BufRead> File<R> {
         let (announced, found) = (zone.announced.unwrap_or(zone.markers_found), zone.markers_found);
         if zone.points.is_none() {
             return Err(self.flaw(Su2Fault::Missing("NPOIN")));
+        }
+        if zone.cells.is_none() {
+            return Err(self.flaw(Su2Fault::Missing("NELEM")));
         }
         if found < announced {
             return Err(self.flaw(Fault::Miscounted { what: "markers (NMARK)", announced, found }));

@@ -19,6 +19,8 @@ pub(super) enum VtkFault {
     Compressed(String),
     #[error("the array {name} has {found} values for {cells} cells: the file is damaged")]
     ArrayLength { name: String, found: usize, cells: usize },
+    #[error("the section {0} is missing: the file was cut off, or its keyword is damaged")]
+    Missing(&'static str),
     #[error("the section {0} occurs twice")]
     Repeated(&'static str),
     #[error(

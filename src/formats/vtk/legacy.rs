@@ -9,6 +9,9 @@ use crate::formats::error::{Fault, Flaw};
 use crate::formats::scanner::Scanner;
 use crate::mesh::Mesh;
 
+/// Sections without which there is no grid; each stands once.
+const NEEDED: [&str; 3] = ["POINTS", "CELLS", "CELL_TYPES"];
+
 /// Numbers read in one go.
 const PIECE: usize = 1 << 16;
 
@@ -19,7 +22,9 @@ const PIECE: usize = 1 << 16;
 pub(super) fn read(input: impl BufRead, length: u64) -> Result<Mesh, Flaw> {
     let mut scanner = Scanner::new(input, length);
     let line = scanner.full_line("the header")?;
-    let version: f64 = line.rsplit(' ').next().and_then(|word| word.parse().ok()).unwrap_or(1.0);
+    // It says how the nodes of some cells are ordered.
+    let version = line.strip_prefix("# vtk DataFile Version").and_then(|rest| rest.trim().parse::<f64>().ok());
+    let version = version.ok_or_else(|| unexpected(&scanner, "# vtk DataFile Version and its number", &line))?;
     scanner.end_line("the header")?;
     scanner.rest_of_line()?; // the title, which may be empty
     let encoding = scanner.full_line("the encoding")?;
@@ -32,12 +37,20 @@ pub(super) fn read(input: impl BufRead, length: u64) -> Result<Mesh, Flaw> {
     if dataset.split_whitespace().collect::<Vec<_>>() != ["DATASET", "UNSTRUCTURED_GRID"] {
         return Err(unexpected(&scanner, "DATASET UNSTRUCTURED_GRID (others are not read)", &dataset));
     }
-    let mut file =
-        File { scanner, binary, grid: Grid { old_hexes: version < 5.1, ..Grid::default() }, values_of: None };
+    let mut file = File {
+        scanner,
+        binary,
+        grid: Grid { old_hexes: version < 5.1, ..Grid::default() },
+        values_of: None,
+        seen: Vec::new(),
+    };
     while let Some(line) = file.scanner.line("a keyword")? {
         file.section(&line)?;
     }
-    let File { grid, scanner, .. } = file;
+    let File { grid, scanner, seen, .. } = file;
+    if let Some(missing) = NEEDED.iter().find(|section| !seen.contains(section)) {
+        return Err(scanner.flaw(VtkFault::Missing(missing)));
+    }
     grid.mesh().map_err(|fault| scanner.flaw(fault))
 }
 
@@ -57,6 +70,8 @@ struct File<R> {
     binary: bool,
     grid: Grid,
     values_of: Option<Support>,
+    /// Which of [`NEEDED`] were read.
+    seen: Vec<&'static str>,
 }
 
 impl<R: BufRead> File<R> {
@@ -70,13 +85,13 @@ impl<R: BufRead> File<R> {
         match words[..] {
             ["POINTS", count, kind] => {
                 let count = self.count(count)?;
-                self.once("POINTS", self.grid.points.is_empty())?;
+                self.once("POINTS")?;
                 self.grid.points = self.array(kind, count.saturating_mul(3), false)?.real();
             }
             ["CELLS", count, size] => self.cells(count, size)?,
             ["CELL_TYPES", count] => {
                 let count = self.count(count)?;
-                self.once("CELL_TYPES", self.grid.types.is_empty())?;
+                self.once("CELL_TYPES")?;
                 self.grid.types = self.whole("int", count)?;
             }
             ["CELL_DATA", count] => {
@@ -121,8 +136,12 @@ impl<R: BufRead> File<R> {
     }
 
     /// Refuses a second section of a kind.
-    fn once(&self, section: &'static str, first: bool) -> Result<(), Flaw> {
-        if first { Ok(()) } else { Err(self.flaw(VtkFault::Repeated(section))) }
+    fn once(&mut self, section: &'static str) -> Result<(), Flaw> {
+        if self.seen.contains(&section) {
+            return Err(self.flaw(VtkFault::Repeated(section)));
+        }
+        self.seen.push(section);
+        Ok(())
     }
 
     /// Holds a count against what there is.
@@ -134,7 +153,7 @@ impl<R: BufRead> File<R> {
     /// Connectivity: each cell with its count before it, or, from version 5.0 on, ends and nodes as two arrays.
     fn cells(&mut self, count: &str, size: &str) -> Result<(), Flaw> {
         let (count, size) = (self.count(count)?, self.count(size)?);
-        self.once("CELLS", self.grid.offsets.is_empty())?;
+        self.once("CELLS")?;
         let is_offsets = self.scanner.next_is(b"OFFSETS")?;
         if is_offsets {
             let kind = self.typed("OFFSETS")?;

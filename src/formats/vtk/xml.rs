@@ -115,6 +115,8 @@ struct File<'a> {
     room: u64,
     /// Names of the open elements.
     open: Vec<String>,
+    /// Whether the outermost element has begun.
+    root: bool,
     /// The array whose element is open.
     array: Option<Array>,
     /// Bytes of the XML that were parsed.
@@ -133,10 +135,13 @@ impl File<'_> {
             let event = reader.read_event().map_err(|error| self.flaw(VtkFault::Xml(error.to_string())))?;
             match event {
                 Event::Start(start) => {
+                    self.check(&start)?;
                     self.start(&start)?;
+                    self.root = true;
                     self.open.push(String::from_utf8_lossy(start.local_name().as_ref().as_bytes()).into_owned());
                 }
                 Event::Empty(start) => {
+                    self.check(&start)?;
                     self.start(&start)?;
                     // What is empty within an array, such as an InformationKey, does not end it.
                     match start.local_name().as_ref().as_bytes() {
@@ -151,6 +156,9 @@ impl File<'_> {
                         && let Some(array) = &mut self.array
                     {
                         array.text.extend_from_slice(text.as_bytes());
+                    } else if !text.as_bytes().trim_ascii().is_empty() && self.has_no_text() {
+                        let found = String::from_utf8_lossy(text.as_bytes()).trim().chars().take(40).collect();
+                        return Err(self.flaw(Fault::Unexpected { what: "a tag", found }));
                     }
                 }
                 Event::End(end) => {
@@ -165,6 +173,21 @@ impl File<'_> {
                 _ => {}
             }
         }
+    }
+
+    /// Whether the element that is open holds elements alone; so does the file itself.
+    fn has_no_text(&self) -> bool {
+        let known = ["VTKFile", "UnstructuredGrid", "Piece", "Points", "Cells", "CellData", "PointData"];
+        self.open.last().is_none_or(|name| known.contains(&name.as_str()))
+    }
+
+    /// Refuses a tag whose attributes cannot be told apart: one that is not found would be taken as not given. There is one root.
+    fn check(&self, start: &BytesStart) -> Result<(), Flaw> {
+        if self.root && self.open.is_empty() {
+            return Err(self.flaw(VtkFault::Xml("an element behind the end".into())));
+        }
+        let wrong = start.attributes().find_map(Result::err);
+        wrong.map_or(Ok(()), |error| Err(self.flaw(VtkFault::Xml(error.to_string()))))
     }
 
     fn start(&mut self, start: &BytesStart) -> Result<(), Flaw> {
@@ -185,11 +208,11 @@ impl File<'_> {
                 }
             }
             b"Piece" => {
-                let count = |name: &str| -> Result<Option<u64>, Flaw> {
-                    let Some(word) = text(name) else { return Ok(None) };
+                let count = |what: &'static str| -> Result<Option<u64>, Flaw> {
+                    let word = text(what).unwrap_or_default();
                     let found = || word.chars().take(40).collect();
                     let count = word.trim().parse();
-                    count.map(Some).map_err(|_| self.flaw(Fault::Number { what: "a piece's count", found: found() }))
+                    count.map(Some).map_err(|_| self.flaw(Fault::Number { what, found: found() }))
                 };
                 self.piece = Piece {
                     points: count("NumberOfPoints")?,
