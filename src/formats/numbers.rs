@@ -62,6 +62,11 @@ impl<R: BufRead> Numbers<R> {
         self.scanner.flaw(fault)
     }
 
+    /// Whether numbers are bytes.
+    pub(super) fn is_bytes(&self) -> bool {
+        self.encoding != Encoding::Text
+    }
+
     /// Bytes not yet read.
     pub(super) fn rest(&self) -> u64 {
         self.scanner.rest()

@@ -61,7 +61,10 @@ impl<R: BufRead> Source<R> {
             None => return Err(source.flaw(Fault::Unexpected { what, found: word.chars().take(40).collect() })),
         };
         match u32::try_from(version) {
-            Ok(known) if VERSIONS.contains(&known) => Ok(source),
+            Ok(known) if VERSIONS.contains(&known) => {
+                source.form = Form::Text { complete: true };
+                Ok(source)
+            }
             _ => Err(source.flaw(GmfFault::Version(version))),
         }
     }

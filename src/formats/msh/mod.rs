@@ -131,6 +131,7 @@ impl Header {
         }
         let line = scanner.full_line("the header")?;
         let words: Vec<&str> = line.split_ascii_whitespace().collect();
+        let words = if words.len() == 3 { words } else { Vec::new() };
         let (Some(&version), Some(binary), Some(Ok(size))) =
             (words.first(), words.get(1).filter(|w| matches!(**w, "0" | "1")), words.get(2).map(|w| w.parse()))
         else {

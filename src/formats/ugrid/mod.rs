@@ -99,6 +99,9 @@ fn read(numbers: &mut Numbers<impl BufRead>) -> Result<Parts, Flaw> {
     }
     rest(numbers, &mut assembly, points)?;
     numbers.end_record("the mesh", false)?;
+    if numbers.is_bytes() && numbers.rest() > 0 && assembly.parts.notes.is_empty() {
+        assembly.parts.notes.push(BEHIND.into()); // fewer bytes than a number has, or behind the last record
+    }
     let mut surfaces: Vec<EntityKey> = assembly.parts.blocks.iter().map(|block| block.entity).collect();
     surfaces.retain(|key| key.dimension == 2);
     surfaces.sort_unstable();
@@ -125,9 +128,11 @@ fn rest(numbers: &mut Numbers<impl BufRead>, assembly: &mut Assembly, points: us
     if values.iter().all(node) && CELLS.into_iter().any(are_cells) {
         return Err(numbers.flaw(UgridFault::MoreCells));
     }
-    assembly.parts.notes.push("what follows the cells (volume numbers, layers, ...) is not used".into());
+    assembly.parts.notes.push(BEHIND.into());
     Ok(())
 }
+
+const BEHIND: &str = "what follows the cells (volume numbers, layers, ...) is not used";
 
 /// Numbers behind the cells that are looked at.
 const LOOKED_AT: usize = 1 << 16;

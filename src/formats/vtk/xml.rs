@@ -234,19 +234,25 @@ impl File<'_> {
                 let Some(number) = number else {
                     return Err(self.flaw(Fault::Unexpected { what: "a type of numbers", found: kind }));
                 };
-                self.array = Some(Array {
-                    section,
-                    name,
-                    number,
-                    components,
-                    form: match text("format").as_deref() {
-                        Some("appended") => Form::Appended,
-                        Some("binary") => Form::Inline,
-                        _ => Form::Text,
-                    },
-                    offset: text("offset").and_then(|word| word.parse().ok()).unwrap_or(0),
-                    text: Vec::new(),
-                });
+                let form = match text("format").as_deref() {
+                    Some("appended") => Form::Appended,
+                    Some("binary") => Form::Inline,
+                    Some("ascii") => Form::Text,
+                    other => {
+                        let found = other.unwrap_or_default().chars().take(40).collect();
+                        return Err(self.flaw(Fault::Unexpected { what: "format: ascii, binary or appended", found }));
+                    }
+                };
+                let offset = match form {
+                    Form::Appended => {
+                        let word = text("offset").unwrap_or_default();
+                        let found = || word.chars().take(40).collect();
+                        let what = "an array's offset";
+                        word.trim().parse().map_err(|_| self.flaw(Fault::Number { what, found: found() }))?
+                    }
+                    _ => 0,
+                };
+                self.array = Some(Array { section, name, number, components, form, offset, text: Vec::new() });
             }
             _ => {}
         }

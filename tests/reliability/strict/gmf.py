@@ -18,8 +18,9 @@ def read(content, _):
         at += 1
         return words[at - 1]
 
-    refuse_unless(take() == "MeshVersionFormatted", "no version")
-    integer(take(), 1, 4)
+    first = take()
+    refuse_unless(first.startswith("MeshVersionFormatted"), "no version")
+    integer(first.removeprefix("MeshVersionFormatted") or take(), 1, 4)
     mesh, dimension, vertices, rows = Mesh(), None, None, []
     while True:
         key = take()

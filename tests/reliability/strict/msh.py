@@ -1,5 +1,8 @@
 """Gmsh MSH 2.2 and 4.1 as text (gmsh.info/doc, "MSH file format")."""
 
+import re
+from math import isfinite
+
 from .mesh import KINDS, Mesh, Refused, integer, real, refuse_unless, split
 
 TYPES = {15: ("point", 1)}
@@ -29,7 +32,7 @@ class Lines:
 def sections(text):
     found, name, lines = {}, None, []
     for line in text.split("\n"):
-        line = line.strip()
+        line = line.strip(" \t\r\n\f")
         if name is None:
             if not line:
                 continue
@@ -67,15 +70,16 @@ def read(content, _):
     return version22(found)
 
 
+NAME = re.compile(r'(\S+) ([^\s"]+) ?"([^"]*)"\Z')
+
+
 def physical_names(lines):
     if lines is None:
         return
     for _ in range(integer(lines.row(1)[0], 0)):
-        words = lines.row()
-        refuse_unless(len(words) >= 3, "a name that is not of three words")
-        integer(words[0], 0, 3), integer(words[1], -(2**31), 2**31 - 1)
-        name = " ".join(words[2:])
-        refuse_unless(len(name) >= 2 and name[0] == name[-1] == '"' and '"' not in name[1:-1], "a name without quotation marks")
+        row = NAME.match(" ".join(lines.row()))
+        refuse_unless(row, "a line that is not dimension, tag and name in quotation marks")
+        integer(row[1], 0, 3), integer(row[2], -(2**31), 2**31 - 1)
     lines.end()
 
 
@@ -143,7 +147,7 @@ def version41(found):
         dimension, entity, parametric, count = lines.row(4)
         dimension, parametric = integer(dimension, 0, 3), integer(parametric)
         integer(entity, -(2**31), 2**31 - 1)
-        numbers = [integer(lines.row(1)[0], 1) for _ in range(integer(count, 0))]
+        numbers = [integer(lines.row(1)[0], 1, 2**64 - 1) for _ in range(integer(count, 0))]
         for number in numbers:
             refuse_unless(number not in places, f"two nodes {number}")
             places[number] = len(mesh.points)
@@ -160,7 +164,7 @@ def version41(found):
         kind, order = TYPES[code]
         found_elements += count
         for _ in range(count):
-            number, *nodes = [integer(word, 0) for word in lines.row(1 + KINDS[kind][2][order - 1])]
+            number, *nodes = [integer(word, 0, 2**64 - 1) for word in lines.row(1 + KINDS[kind][2][order - 1])]
             mesh.add(kind, order, place(nodes, places), entity, None, number)
     lines.end()
     refuse_unless(announced == found_elements, "another number of elements than announced")
@@ -177,13 +181,13 @@ def entities(lines):
             box = 3 if dimension == 0 else 6
             integer(words[0], -(2**31), 2**31 - 1)
             refuse_unless(len(words) > 1 + box, "an entity without its box")
-            [real(word) for word in words[1 : 1 + box]]
+            refuse_unless(all(isfinite(real(word)) for word in words[1 : 1 + box]), "a box that is not finite")
             rest = words[1 + box :]
             for _ in range(1 if dimension == 0 else 2):
                 refuse_unless(rest, "an entity's counts are missing")
                 listed = integer(rest[0], 0)
                 refuse_unless(len(rest) > listed, "an entity's tags are missing")
-                [integer(word) for word in rest[1 : 1 + listed]]
+                [integer(word, -(2**31), 2**31 - 1) for word in rest[1 : 1 + listed]]
                 rest = rest[1 + listed :]
             refuse_unless(not rest, "more on an entity's line than announced")
     lines.end()
