@@ -32,7 +32,7 @@ use super::recover::recover;
 use super::smoothing::smooth_level;
 use super::start::start;
 use super::wall::fit::fit;
-use super::wall::project;
+use super::wall::{follow_rims, project};
 use crate::element::Order;
 use crate::mesh::Mesh;
 use crate::mesh::elevate::elevate;
@@ -172,10 +172,10 @@ impl<'a> Continuation<'a> {
     fn projected(&self, order: Order, clock: &mut Clock) -> Result<(Level<'a>, Vec<String>), Error> {
         clock.observer.order(order);
         clock.step(Step::Elevate);
-        let (mut level, notes) = Level::new(self.case, elevate(&self.linear, order)?);
+        let (mut level, mut notes) = Level::new(self.case, elevate(&self.linear, order)?);
 
         clock.step(Step::Project);
-        put_on_cad(&mut level);
+        notes.extend(put_on_cad(&mut level));
         if let Some(layers) = self.case.settings.curve_layers {
             leave_straight_beyond(layers, &mut level);
         }
@@ -204,13 +204,15 @@ pub(super) fn projected<'a>(case: Case<'a>, linear: &Mesh, order: Order) -> Resu
     Ok(level)
 }
 
-/// Projects the wall, carries periodic images along, and fits the wall to the CAD.
-fn put_on_cad(level: &mut Level) {
+/// Projects the wall, carries periodic images along, fits the wall to the CAD, and lets the faces beside it follow; what there is to say of
+/// these.
+fn put_on_cad(level: &mut Level) -> Vec<String> {
     project(level);
     let mut displacement = level.wall.displacements();
     level.periodic.carry(level.elevated.mesh.points(), &mut displacement);
     level.wall.displace_all(&displacement);
     fit(level);
+    follow_rims(level)
 }
 
 /// Takes a level that is inverted through recovery; whether it came out proven, and on the CAD but for released nodes.

@@ -36,6 +36,7 @@ mod real_linkage;
 mod registry;
 mod release;
 mod resume;
+mod rims;
 mod samples;
 mod schema;
 mod skin;

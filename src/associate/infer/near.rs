@@ -13,7 +13,8 @@ use crate::associate::Side;
 use crate::associate::side::SMOOTH;
 use crate::mesh::{Boundary, Mesh};
 
-/// Corners of a face beside the CAD are nearer to it than this fraction of the face's longest edge.
+/// Corners of a face beside the CAD are nearer to it than this fraction of the face's shortest edge. Of its longest edge it would be more
+/// than a thin cell is high: the sides of a stack of layers stand on a CAD face's edge, and would be beside that face.
 const NEAR: f64 = 0.1;
 
 /// Tells of faces that are off the CAD which of them run beside a CAD face that no mesh face lies on; and of those that are off it in part, which
@@ -36,9 +37,11 @@ pub(super) fn find(
         let (side, group) = (&sides[face], group.as_ref()?);
         let (id, off) = over(group, side.middle, side.normal)?;
         let is_nearest = others.as_ref().is_none_or(|other| other.distance(side.middle) > off);
-        let corners = mesh.points_of(&boundary.corners[face]).map(|x| group.distance(x));
-        let distance = corners.fold(0.0, f64::max);
-        (distance <= NEAR * side.size && is_nearest).then_some(Doubt::Beside { face: id, distance })
+        let corners: Vec<DVec3> = mesh.points_of(&boundary.corners[face]).collect();
+        let distance = corners.iter().map(|&x| group.distance(x)).fold(0.0, f64::max);
+        let next = corners.iter().cycle().skip(1);
+        let shortest = corners.iter().zip(next).map(|(a, b)| a.distance(*b)).fold(f64::INFINITY, f64::min);
+        (distance <= NEAR * shortest && is_nearest).then_some(Doubt::Beside { face: id, distance })
     };
     let found = |(face, doubt): &(usize, Doubt)| {
         let found = match doubt {

@@ -102,13 +102,24 @@ impl<'a> Field<'a> {
     }
 
     /// Distance to the wall along mesh edges at the combination `weights` of linear nodes; not finite where no path leads to it.
+    ///
+    /// A cell in a corner of the wall has all its nodes on it, on different faces: no less than the distance to the closest point.
     pub(super) fn distance(&self, corners: &[usize], weights: &[f64]) -> f64 {
-        corners.iter().zip(weights).map(|(&c, &w)| self.roots.length[c] * w).sum()
+        let along_edges = corners.iter().zip(weights).map(|(&c, &w)| self.roots.length[c] * w).sum();
+        if self.foot_by_roots(corners, weights).is_some() {
+            return along_edges;
+        }
+        let x = self.position(corners, weights);
+        self.closest(x).map_or(along_edges, |foot| foot.place.distance(x).max(along_edges))
+    }
+
+    fn position(&self, corners: &[usize], weights: &[f64]) -> DVec3 {
+        corners.iter().zip(weights).map(|(&c, &w)| self.points[c] * w).sum()
     }
 
     /// The displacement at the combination `weights` of linear nodes.
     pub(super) fn at(&self, corners: &[usize], weights: &[f64]) -> DVec3 {
-        let x: DVec3 = corners.iter().zip(weights).map(|(&c, &w)| self.points[c] * w).sum();
+        let x = self.position(corners, weights);
         let Some(foot) = self.foot_by_roots(corners, weights).or_else(|| self.closest(x)) else {
             return DVec3::ZERO;
         };

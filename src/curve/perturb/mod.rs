@@ -57,6 +57,7 @@ mod roots;
 
 use glam::DVec3;
 use rayon::prelude::*;
+use rustc_hash::FxHashSet;
 
 use super::level::{Case, Level};
 use crate::associate::Classification;
@@ -90,11 +91,7 @@ pub fn perturb(level: &Level, mut displacement: Vec<DVec3>) -> Vec<DVec3> {
         return sum(level, displacement);
     }
 
-    let on = |faces: &[WallFace]| {
-        let mut marked = vec![false; linear];
-        faces.iter().flat_map(WallFace::corners).for_each(|n| marked[n.index()] = true);
-        marked
-    };
+    let on = |faces: &[WallFace]| linear_nodes_on(faces, linear);
     let seeds = on(&wall);
     let planes = wall_faces(elevated, boundary, |f| planar(association.faces[f]));
     let graph = Graph::new(elevated);
@@ -128,6 +125,44 @@ pub fn perturb(level: &Level, mut displacement: Vec<DVec3>) -> Vec<DVec3> {
     whole.resize(nodes, DVec3::ZERO);
     let whole = carry(&between, elevated, whole, |n| classification(n) == Classification::Free);
     sum(level, whole)
+}
+
+/// The nodes of faces off the CAD that are carried along by the curved walls, between these and the other faces that stay straight, with their
+/// displacements: those on no other boundary face, linear ones apart.
+#[must_use]
+pub(super) fn carried_along(level: &Level, faces: &FxHashSet<usize>) -> Vec<(usize, DVec3)> {
+    let Level { case: Case { boundary, association, .. }, elevated, wall: state, .. } = level;
+    let linear = elevated.linear_nodes;
+    let mut follows = vec![false; elevated.boundary_nodes];
+    let nodes_of = |face: usize| boundary.nodes(face, &elevated.mesh).iter().map(|n| n.index());
+    faces.iter().flat_map(|&face| nodes_of(face)).for_each(|n| follows[n] = n >= linear);
+    let others = (0..boundary.faces.len()).filter(|face| !faces.contains(face));
+    others.flat_map(nodes_of).for_each(|n| follows[n] = false);
+
+    let wall = wall_faces(elevated, boundary, |f| {
+        matches!(association.faces[f], Classification::Surface(_))
+            && association.plane_of(association.faces[f]).is_none()
+    });
+    let straight =
+        wall_faces(elevated, boundary, |f| association.faces[f] == Classification::Straight && !faces.contains(&f));
+    let on = |faces: &[WallFace]| linear_nodes_on(faces, linear);
+    let (seeds, graph) = (on(&wall), Graph::new(elevated));
+    let roots = graph.roots(&seeds);
+    let held = (!straight.is_empty()).then(|| Held::new(straight, on, &graph));
+    let displacement = state.displacements();
+    let beyond = |n: usize| state.is_beyond_layers(n);
+    let curved = Field::new(elevated, &wall, &displacement, &seeds, roots, &[], beyond);
+    let between = Between { curved, held: held.as_ref().map(|held| held.field(elevated, &displacement, beyond)) };
+    let follows = |n: usize| follows.get(n).is_some_and(|follows| *follows);
+    let carried = carry(&between, elevated, displacement.clone(), follows);
+    carried.into_iter().enumerate().filter(|(n, _)| follows(*n)).collect()
+}
+
+/// Marks the linear nodes of faces.
+fn linear_nodes_on(faces: &[WallFace], linear_nodes: usize) -> Vec<bool> {
+    let mut marked = vec![false; linear_nodes];
+    faces.iter().flat_map(WallFace::corners).for_each(|n| marked[n.index()] = true);
+    marked
 }
 
 /// Straight positions plus displacements, planes kept exactly.
