@@ -9,7 +9,6 @@ use super::input;
 use crate::cli::exit::DONE;
 use crate::cli::files::Files;
 use crate::cli::output::{Beside, Failure, print};
-use crate::formats;
 
 /// Options of `sagitta convert`.
 #[derive(Args)]
@@ -24,11 +23,11 @@ pub(super) struct Options {
 
 /// Reads a mesh and writes it in another format.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
-    Files::of_mesh(&options.mesh).writes_mesh(Some(&options.output)).check()?;
+    Files::of_mesh(&options.mesh).writes_mesh(Some(&options.output), options.form.solver()).check()?;
     let mesh = input::mesh(&options.mesh)?;
-    formats::write(&options.output, &mesh, &options.form.with(&[]))?;
+    let written = options.form.write(&options.output, &mesh, &[])?;
     let mut beside = Beside::default();
-    let notes: String = mesh.notes().iter().map(|note| format!("note: {note}\n")).collect();
+    let notes: String = mesh.notes().iter().chain(&written).map(|note| format!("note: {note}\n")).collect();
     beside.tell(print(&format!("{notes}written: {}", options.output.display())));
     Ok(beside.exit_code(DONE))
 }

@@ -8,7 +8,7 @@ use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
 use crate::cli::output::Failure;
-use crate::formats;
+use crate::formats::{self, Solver};
 
 /// Bytes that a file beside the result may have.
 const SMALL: u64 = 1 << 12;
@@ -26,6 +26,8 @@ pub(super) struct Files {
     written: Vec<(&'static str, PathBuf)>,
     /// The mesh that is written.
     output: Option<PathBuf>,
+    /// The solver that it is for.
+    solver: Option<&'static Solver>,
     /// Bytes that it has at least.
     expected: u64,
 }
@@ -59,8 +61,13 @@ impl Files {
         self
     }
 
-    /// Adds the mesh that is written, where it is given.
-    pub(super) fn writes_mesh(mut self, path: Option<impl Into<PathBuf>>) -> Files {
+    /// Adds the mesh that is written, and the solver that it is for, where they are given.
+    pub(super) fn writes_mesh(
+        mut self,
+        path: Option<impl Into<PathBuf>>,
+        solver: Option<&'static Solver>,
+    ) -> Files {
+        self.solver = solver;
         self.output = path.map(Into::into);
         let output = self.output.clone();
         self.writes("--output", output)
@@ -73,7 +80,7 @@ impl Files {
     pub(super) fn check(&self) -> Result<(), Failure> {
         self.apart()?;
         if let Some(output) = &self.output {
-            formats::check_output(output, self.expected)?;
+            formats::check_output(output, self.expected, self.solver)?;
         }
         for (_, path) in &self.written {
             formats::check_file(path, SMALL)?;

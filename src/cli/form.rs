@@ -1,9 +1,12 @@
 //! Options of commands that write a mesh: how it is written.
 
-use clap::builder::PossibleValue;
+use std::path::Path;
+
+use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, ValueEnum};
 
-use crate::formats::{self, Field, WriteOptions, msh};
+use crate::formats::{self, Field, Solver, WriteOptions, msh, solver};
+use crate::mesh::Mesh;
 
 /// Help of a mesh that is read.
 pub(super) fn mesh(what: &str) -> String {
@@ -15,9 +18,21 @@ pub(super) fn output(what: &str) -> String {
     format!("{what}: {}", formats::writable())
 }
 
+/// The words that choose a solver.
+fn solvers() -> PossibleValuesParser {
+    PossibleValuesParser::new(solver::SOLVERS.iter().map(|solver| PossibleValue::new(solver.name).help(solver.title)))
+}
+
 /// Where a format leaves a choice.
 #[derive(Args)]
 pub(super) struct Form {
+    /// Write what this solver takes, as it takes it: version, encoding, named boundary; refused at once where it cannot
+    /// take the mesh or its order
+    #[arg(long = "for", value_name = "SOLVER", value_parser = solvers(), conflicts_with_all = ["msh_version", "ascii"])]
+    solver: Option<String>,
+    /// Leave out points, lines and faces that belong to no physical group, as Gmsh does
+    #[arg(long)]
+    physical_only: bool,
     /// VTU: leave the boundary elements out, for readers that refuse mixed dimensions
     #[arg(long)]
     volume_only: bool,
@@ -30,12 +45,26 @@ pub(super) struct Form {
 }
 
 impl Form {
-    /// The choice, and fields to show.
-    pub(super) fn with<'a>(&self, fields: &'a [Field]) -> WriteOptions<'a> {
+    /// The solver that the mesh is for.
+    pub(super) fn solver(&self) -> Option<&'static Solver> {
+        self.solver.as_deref().and_then(solver::by_name)
+    }
+
+    /// Writes a mesh as chosen, with fields to show; returns notes of what was changed and of what the file does not hold.
+    pub(super) fn write(&self, path: &Path, mesh: &Mesh, fields: &[Field]) -> Result<Vec<String>, formats::Error> {
+        let options = self.options(fields);
+        match self.solver() {
+            Some(solver) => formats::write_for(path, mesh, solver, &options),
+            None => formats::write(path, mesh, &options),
+        }
+    }
+
+    fn options<'a>(&self, fields: &'a [Field]) -> WriteOptions<'a> {
         WriteOptions {
             msh_version: self.msh_version,
             msh_encoding: if self.ascii { msh::Encoding::Ascii } else { msh::Encoding::Binary },
             volume_only: self.volume_only,
+            physical_only: self.physical_only,
             fields,
         }
     }

@@ -32,6 +32,8 @@ pub struct Job {
     pub reading: ReadOptions,
     /// How the mesh is read.
     pub mesh_reading: formats::ReadOptions,
+    /// The solver that the curved mesh is for, and the file that it is to be given; a mesh that it cannot take is not curved.
+    pub solver: Option<(PathBuf, &'static formats::Solver)>,
     /// What is asked for.
     pub settings: Settings,
 }
@@ -42,7 +44,7 @@ impl Job {
     pub fn new(mesh: PathBuf, cad: PathBuf, linkage: Option<PathBuf>, order: Order) -> Job {
         let (reading, settings) = (ReadOptions::default(), Settings::new(order));
         let mesh_reading = formats::ReadOptions::default();
-        Job { mesh, cad, linkage, cad_scale: Some(1.0), reading, mesh_reading, settings }
+        Job { mesh, cad, linkage, cad_scale: Some(1.0), reading, mesh_reading, solver: None, settings }
     }
 
     /// Reads the files and curves the mesh.
@@ -83,6 +85,9 @@ impl Job {
 
     fn read_mesh(&self) -> Result<Mesh, JobError> {
         let linear = formats::read_with(&self.mesh, &self.mesh_reading)?;
+        if let Some((file, solver)) = &self.solver {
+            formats::check_solver(file, solver, &linear, self.settings.order)?;
+        }
         checked(linear).map_err(|cause| self.error(cause))
     }
 

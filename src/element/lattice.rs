@@ -34,6 +34,20 @@ pub fn edge_nodes(cell: Cell, order: Order) -> &'static [Vec<usize>] {
     })
 }
 
+/// For each side of a cell, in the order of [`Cell::sides`], the cell's nodes on it in the side's own internal order.
+#[must_use]
+pub fn side_nodes(cell: Cell, order: Order) -> &'static [Vec<usize>] {
+    static TABLES: Tables<Vec<Vec<usize>>> = Tables::new();
+    TABLES.get(cell, order, || {
+        if cell.dimension() < 3 {
+            return edge_nodes(cell, order).to_vec();
+        }
+        let all = lattice(cell, order);
+        let place = |at: &[u8; 3]| all.iter().position(|own| own == at);
+        cell.faces().iter().map(|face| face_lattice(cell, face, order).iter().filter_map(place).collect()).collect()
+    })
+}
+
 fn build(cell: Cell, p: u8) -> Vec<[u8; 3]> {
     if p == 0 {
         return vec![[0, 0, 0]];

@@ -19,7 +19,7 @@ mod volume;
 pub use cell::{Cell, Face, Order, OrderOutOfRange};
 pub use extension::interior_extension;
 pub(crate) use lattice::{between, embed, shifted};
-pub use lattice::{edge_nodes, face_lattice, lattice};
+pub use lattice::{edge_nodes, face_lattice, lattice, side_nodes};
 pub use net::Net;
 pub use orientation::{InteriorSlots, canonical, interior_count, interior_slots, interior_start, mirrored};
 pub use samples::Samples;

@@ -12,7 +12,7 @@ use crate::element::{Cell, Order};
 use crate::mesh::{Block, Entity, EntityKey, Mesh, NodeId, Parts, PhysicalName};
 
 /// The group of the volume's elements where a file does not name them; the name that PyFR asks for.
-const VOLUME_NAME: &str = "fluid";
+pub(super) const VOLUME_NAME: &str = "fluid";
 
 /// What has been read so far.
 pub(super) struct Assembly {

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use super::detect::{Head, Verdict};
 use super::error::Error;
+use super::loss::Loss;
 use super::options::{ReadOptions, WriteOptions};
 use super::part::{Part, Unwritten};
 use crate::element::{Cell, Order};
@@ -35,6 +36,8 @@ pub struct Reader {
 pub struct Writer {
     /// What is written to it.
     pub holds: Holds,
+    /// What a mesh may have and files do not hold; it is told when there is something to lose.
+    pub(super) loses: &'static [Loss],
     pub(super) write: fn(&mut Part, &Mesh, &WriteOptions) -> Result<(), Unwritten>,
 }
 

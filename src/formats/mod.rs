@@ -15,6 +15,7 @@ mod foreign;
 mod format;
 mod gmf;
 mod grid_layout;
+mod loss;
 pub mod msh;
 mod names;
 mod node_order;
@@ -27,12 +28,14 @@ mod recognise;
 mod registry;
 mod repeats;
 mod scanner;
+pub mod solver;
 mod su2;
 mod target;
 mod turned;
 mod ugrid;
 mod vtk;
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use format::Input;
@@ -46,8 +49,10 @@ pub use options::{ReadOptions, WriteOptions};
 pub use output::{check_file, write_bytes, write_file};
 pub use part::abandon;
 pub use registry::{REGISTRY, readable, table, writable};
+pub use solver::Solver;
 pub(crate) use target::{folder, followed};
 
+use crate::element::Order;
 use crate::mesh::Mesh;
 
 /// Reads a mesh file; the format is found by content and name.
@@ -90,22 +95,40 @@ pub fn is_mesh(path: &Path) -> Result<bool, Error> {
     Ok(detect(&Input::open(path)?.head()).map_or_else(|refusal| refusal.is_mesh, |_| true))
 }
 
-/// Whether a mesh of about `expected` bytes could be written under this name: to be asked before long work, see [`check_file`].
+/// Whether a mesh of about `expected` bytes could be written under this name, for a solver where one is given: to be asked before
+/// long work, see [`check_file`].
 ///
 /// # Errors
 /// [`Error::Format`] for a name of no known format, those of [`check_file`].
-pub fn check_output(path: &Path, expected: u64) -> Result<(), Error> {
-    of_name(path)?;
+pub fn check_output(path: &Path, expected: u64, solver: Option<&Solver>) -> Result<(), Error> {
+    format_of(path, solver)?;
     check_file(path, expected)
 }
 
-/// The format that a file of this name is written in.
-fn of_name(path: &Path) -> Result<&'static Writer, Error> {
-    let known = registry::written().find(|format| format.is_name(path));
-    known.and_then(|format| format.writer.as_ref()).ok_or_else(|| Error::Format {
-        file: path.to_path_buf(),
-        reason: format!("the name ends in no format that is written; name it {}", registry::names()),
+/// The format that a file of this name is written in, for a solver where one is given.
+fn format_of(path: &Path, solver: Option<&Solver>) -> Result<&'static Format, Error> {
+    let refused = |reason| Error::Format { file: path.to_path_buf(), reason };
+    if let Some(solver) = solver {
+        return Ok(solver.intake(path).map_err(refused)?.format);
+    }
+    let of_name = registry::written().find(|format| format.is_name(path));
+    of_name.ok_or_else(|| {
+        let names = registry::names();
+        refused(format!("the name ends in no format that is written; name it {names}"))
     })
+}
+
+/// Whether a solver takes a file of this name with this mesh, once the mesh is of an order.
+///
+/// # Errors
+/// [`Error::Format`] for a name that the solver does not take, [`Error::Inexpressible`] for cells or orders that it does not.
+pub fn check_solver(path: &Path, solver: &Solver, mesh: &Mesh, order: Order) -> Result<(), Error> {
+    let file = path.to_path_buf();
+    let intake = solver.intake(path).map_err(|reason| Error::Format { file: file.clone(), reason })?;
+    match solver.refusal(intake, mesh, order) {
+        Some(reason) => Err(Error::Inexpressible { file, reason }),
+        None => Ok(()),
+    }
 }
 
 /// The file beside a mesh file that is read with it, where there is one.
@@ -116,21 +139,47 @@ pub fn beside(path: &Path) -> Option<PathBuf> {
 
 /// Whether a file of this name would show [`WriteOptions::fields`].
 #[must_use]
-pub fn shows_fields(path: &Path) -> bool {
-    of_name(path).is_ok_and(|writer| writer.holds.fields)
+pub fn shows_fields(path: &Path, solver: Option<&Solver>) -> bool {
+    let format = format_of(path, solver).ok();
+    format.and_then(|format| format.writer.as_ref()).is_some_and(|writer| writer.holds.fields)
 }
 
 /// Writes a mesh file; the format is that of the name's ending.
 ///
-/// The file appears under its name only when it is complete. Equal meshes make equal bytes.
+/// The file appears under its name only when it is complete. Equal meshes make equal bytes. Returns notes of what was left out and
+/// of what the file does not hold.
 ///
 /// # Errors
 /// [`Error::Io`], [`Error::Format`] for a name of no known format, [`Error::Inexpressible`] where the format lacks
 /// what the mesh holds.
-pub fn write(path: &Path, mesh: &Mesh, options: &WriteOptions<'_>) -> Result<(), Error> {
-    let writer = of_name(path)?;
-    if let Some(reason) = writer.holds.refusal(mesh) {
-        return Err(Error::Inexpressible { file: path.to_path_buf(), reason });
+pub fn write(path: &Path, mesh: &Mesh, options: &WriteOptions<'_>) -> Result<Vec<String>, Error> {
+    write_as(format_of(path, None)?, path, &mesh.without_unmarked(), options)
+}
+
+/// Writes a mesh file as a solver takes it; the format is one of the solver's, by the name's ending. Otherwise as [`write`].
+///
+/// # Errors
+/// Those of [`write`] and of [`check_solver`].
+pub fn write_for(path: &Path, mesh: &Mesh, solver: &Solver, options: &WriteOptions<'_>) -> Result<Vec<String>, Error> {
+    check_solver(path, solver, mesh, mesh.order())?;
+    let refused = |reason| Error::Inexpressible { file: path.to_path_buf(), reason };
+    let intake = solver.intake(path).map_err(refused)?;
+    let options = WriteOptions { msh_version: intake.version, msh_encoding: intake.encoding, ..*options };
+    let Some(groups) = &intake.groups else {
+        return write_as(intake.format, path, &mesh.without_unmarked(), &options);
+    };
+    let (prepared, mut notes) = solver::prepare(mesh, groups).map_err(refused)?;
+    notes.extend(write_as(intake.format, path, &prepared, &options)?);
+    Ok(notes)
+}
+
+fn write_as(format: &Format, path: &Path, mesh: &Mesh, options: &WriteOptions<'_>) -> Result<Vec<String>, Error> {
+    let refused = |reason| Error::Inexpressible { file: path.to_path_buf(), reason };
+    let Some(writer) = &format.writer else { return Err(refused(format!("{} is not written", format.name))) };
+    let (mesh, left_out) = if options.physical_only { solver::physical_only(mesh) } else { (Cow::Borrowed(mesh), None) };
+    if let Some(reason) = writer.holds.refusal(&mesh) {
+        return Err(refused(reason));
     }
-    output::write(path, |part| (writer.write)(part, mesh, options))
+    output::write(path, |part| (writer.write)(part, &mesh, options))?;
+    Ok(left_out.into_iter().chain(writer.loses.iter().filter_map(|loss| loss.note(&mesh))).collect())
 }

@@ -59,6 +59,8 @@ pub struct WriteOptions<'a> {
     pub msh_encoding: Encoding,
     /// VTU without the cells below the top dimension.
     pub volume_only: bool,
+    /// Without the elements below the mesh's own dimension that belong to no physical group.
+    pub physical_only: bool,
     /// Values to show, in VTU files.
     pub fields: &'a [Field],
 }

@@ -149,7 +149,7 @@ impl Options {
             .reads("--cad", Some(&self.cad))
             .reads("--linkage", self.linkage.as_ref())
             .reads("--resume", self.resume.as_ref())
-            .writes_mesh(written(&self.output))
+            .writes_mesh(written(&self.output), self.form.solver())
             .writes("--report", self.report.as_ref())
             .writes("--trace", written(&self.trace))
             .writes("--checkpoint", written(&self.checkpoint))
@@ -163,6 +163,7 @@ impl Options {
             cad_scale: self.reading.scale(),
             reading: self.reading.options(),
             mesh_reading: input::reading(),
+            solver: self.output.clone().zip(self.form.solver()),
             settings: self.settings(),
         }
     }
@@ -213,7 +214,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     };
     // The mesh first; and the rest also where the mesh could not be written.
     let missing = missing(options, &curved).filter(|_| !options.keep_invalid);
-    let written = if missing.is_none() { write(options, output, &curved) } else { Ok(()) };
+    let written = if missing.is_none() { write(options, output, &curved) } else { Ok(Vec::new()) };
     let traced = options.trace.as_ref().map_or(Ok(()), |path| trace.write(path, &curved.smoothed));
     monitor.finish();
     let mut beside = Beside::default();
@@ -225,11 +226,14 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     }
     let stop = monitor.stop.map_or_else(String::new, |stop| format!("\n{stop}"));
     beside.tell(print(&format!("{report}{stop}")));
-    written?;
+    let notes = written?;
     let written = output.display();
     match missing {
         Some(why) => message(format_args!("sagitta: {written}: not written, as {why} (--keep-invalid writes it)")),
-        None => beside.tell(print(&format!("written: {written}"))),
+        None => {
+            let notes: String = notes.iter().map(|note| format!("note: {note}\n")).collect();
+            beside.tell(print(&format!("{notes}written: {written}")));
+        }
     }
     Ok(beside.exit_code(exit_code(options, &curved)))
 }
@@ -260,10 +264,10 @@ fn dry_run(job: &Job, report: Option<&Path>) -> Result<u8, Failure> {
     Ok(beside.exit_code(DONE))
 }
 
-fn write(options: &Options, output: &Path, curved: &Curved) -> Result<(), Failure> {
-    let fields = if formats::shows_fields(output) { fields(curved) } else { Vec::new() };
-    formats::write(output, &curved.mesh.without_unmarked(), &options.form.with(&fields))?;
-    Ok(())
+/// Writes the mesh; returns notes.
+fn write(options: &Options, output: &Path, curved: &Curved) -> Result<Vec<String>, Failure> {
+    let fields = if formats::shows_fields(output, options.form.solver()) { fields(curved) } else { Vec::new() };
+    Ok(options.form.write(output, &curved.mesh, &fields)?)
 }
 
 fn exit_code(options: &Options, curved: &Curved) -> u8 {

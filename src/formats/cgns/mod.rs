@@ -24,6 +24,7 @@ mod zone;
 use super::detect::{Head, Verdict};
 use super::error::{Error, Flaw, Place};
 use super::format::{Format, Holds, Input, Reader, Writer};
+use super::loss::Loss;
 use super::options::ReadOptions;
 use std::path::Path;
 
@@ -51,6 +52,7 @@ pub(super) static FORMAT: Format = Format {
             notes: "one zone, one section a type; conditions, families, numbers of groups and entities (`Ordinal_t`)",
             ..HOLDS
         },
+        loses: &[Loss::Lower, Loss::NodeNumbers, Loss::Periodic, Loss::Parameters, Loss::Zones],
         write: |part, mesh, _| write::write(part.path(), mesh),
     }),
 };

@@ -20,6 +20,7 @@ mod tests;
 use super::detect::{Head, Refusal, Verdict};
 use super::error::Error;
 use super::format::{Format, Holds, Input, Reader, Writer};
+use super::loss::Loss;
 use super::options::ReadOptions;
 use crate::element::{Cell, Order};
 use crate::mesh::Mesh;
@@ -43,6 +44,7 @@ pub(super) static FORMAT: Format = Format {
             notes: "`.meshb` binary, of version 2, or 3 and 4 where the size needs it; `.mesh` text; with `...Ordering` keywords",
             ..HOLDS
         },
+        loses: &[Loss::NodeNumbers, Loss::Names, Loss::Periodic, Loss::Conditions, Loss::Zones],
         write: |part, mesh, _| {
             let binary = !part.is_named("mesh");
             part.stream(|out| write::write(out, mesh, binary))

@@ -31,6 +31,7 @@ use source::{Bytes, Text};
 use super::detect::{Head, Verdict};
 use super::error::{Fault, Flaw};
 use super::format::{Format, Holds, Reader, Writer};
+use super::loss::Loss;
 use super::part::Unwritten;
 use super::scanner::Scanner;
 use crate::element::{Cell, Order};
@@ -50,6 +51,7 @@ pub(super) static FORMAT: Format = Format {
     },
     writer: Some(Writer {
         holds: Holds { notes: "4.1, `--msh-version 2.2`, `--ascii`", ..HOLDS },
+        loses: &[Loss::Conditions, Loss::Zones],
         write: |part, mesh, options| part.stream(|out| write(out, mesh, options.msh_version, options.msh_encoding)),
     }),
 };

@@ -12,6 +12,7 @@ mod xml;
 
 use super::detect::{Head, Refusal, Verdict};
 use super::format::{Format, Holds, Reader, Writer};
+use super::loss::Loss;
 use crate::element::{Cell, Order};
 
 /// VTK's XML form of unstructured grids.
@@ -36,6 +37,7 @@ pub(super) static VTU: Format = Format {
                     P2 on as degenerate hexes",
             ..HOLDS
         },
+        loses: &[Loss::NodeNumbers, Loss::Names, Loss::Periodic, Loss::Conditions, Loss::Parameters, Loss::Zones],
         write: |part, mesh, options| part.stream(|out| write::write(out, mesh, options.fields, options.volume_only)),
     }),
 };

@@ -1,0 +1,65 @@
+//! What files of a format do not hold of a mesh, told when there is something to lose.
+
+use crate::mesh::Mesh;
+
+/// A kind of thing that a mesh may have and a file does not hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Loss {
+    /// Elements below the sides of the cells: points, and in a volume mesh lines.
+    Lower,
+    /// All elements below the cells.
+    Sides,
+    /// Numbers of nodes that are not their places.
+    NodeNumbers,
+    /// Names of groups.
+    Names,
+    /// Numbers of groups that are not those of their entities.
+    GroupNumbers,
+    /// Pairs of periodic entities.
+    Periodic,
+    /// Kinds of boundary conditions.
+    Conditions,
+    /// Parameters of nodes on their curves and surfaces.
+    Parameters,
+    /// Zones.
+    Zones,
+}
+
+impl Loss {
+    /// What is lost of a mesh, where there is something.
+    pub(super) fn note(self, mesh: &Mesh) -> Option<String> {
+        let elements = |gap: usize| -> usize {
+            let below = mesh.blocks().iter().filter(|block| block.cell.dimension() + gap <= mesh.dimension());
+            below.map(|block| block.tags.len()).sum()
+        };
+        let count = match self {
+            Loss::Lower => elements(2),
+            Loss::Sides => elements(1),
+            Loss::NodeNumbers => mesh.node_tags().iter().zip(1..).filter(|&(&tag, place)| tag != place).count(),
+            Loss::Names => mesh.physical_names().len(),
+            Loss::GroupNumbers => {
+                let other = |key| mesh.physical_tags_of(key).iter().any(|tag| *tag != key.tag);
+                mesh.blocks().iter().filter(|block| other(block.entity)).count()
+            }
+            Loss::Periodic => mesh.periodic().len(),
+            Loss::Conditions => mesh.conditions().len(),
+            Loss::Parameters => mesh.node_parameters().len(),
+            Loss::Zones => mesh.zones().len(),
+        };
+        (count > 0).then(|| self.told(count))
+    }
+
+    fn told(self, count: usize) -> String {
+        match self {
+            Loss::Lower => format!("{count} elements below the boundary (points, lines) have no place in the file"),
+            Loss::Sides => format!("{count} boundary elements have no place in the file"),
+            Loss::NodeNumbers => format!("{count} nodes have other numbers in the file, which counts them in their order"),
+            Loss::Names => format!("the names of {count} groups have no place in the file"),
+            Loss::GroupNumbers => "numbers of groups have no place in the file".to_owned(),
+            Loss::Periodic => format!("{count} periodic pairs of entities have no place in the file"),
+            Loss::Conditions => format!("the kinds of {count} boundary conditions have no place in the file"),
+            Loss::Parameters => format!("the parameters of {count} nodes on the CAD have no place in the file"),
+            Loss::Zones => format!("{count} zones become one"),
+        }
+    }
+}
