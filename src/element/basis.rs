@@ -38,6 +38,14 @@ pub fn at_lattice(cell: Cell, order: Order, lattice_order: Order) -> Vec<Vec<f64
     nodes.map(|node| values(cell, order, bernstein::chart(cell, unit(node)))).collect()
 }
 
+/// The values at the nodes of the lattice, of the function that has given values at other points: row-major, `[node][point]`.
+///
+/// The points, in coordinates of the unit cell, must determine a function of the element's space.
+#[must_use]
+pub fn from_points(cell: Cell, order: Order, points: &[[f64; 3]]) -> Vec<f64> {
+    inverse(points.iter().flat_map(|&at| values(cell, order, bernstein::chart(cell, at))).collect())
+}
+
 /// Derivatives of the Lagrange functions by the coordinates of the unit cell, at a point in reference coordinates.
 #[must_use]
 pub fn gradients(cell: Cell, order: Order, at: [f64; 3]) -> Vec<[f64; 3]> {

@@ -16,6 +16,7 @@ mod format;
 mod gmf;
 mod grid_layout;
 mod loss;
+mod mfem;
 pub mod msh;
 mod names;
 mod node_order;

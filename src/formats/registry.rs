@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 #[cfg(feature = "cgns")]
 use super::cgns;
 use super::format::{Format, Holds};
-use super::{gmf, msh, plot3d, su2, ugrid, vtk};
+use super::{gmf, mfem, msh, plot3d, su2, ugrid, vtk};
 use crate::element::Cell;
 
 /// All formats, the most telling marks first.
@@ -13,6 +13,7 @@ pub static REGISTRY: &[&Format] = &[
     &msh::FORMAT,
     #[cfg(feature = "cgns")]
     &cgns::FORMAT,
+    &mfem::FORMAT,
     &gmf::FORMAT,
     &ugrid::FORMAT,
     &su2::FORMAT,

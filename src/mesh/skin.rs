@@ -56,6 +56,12 @@ impl Skin {
         skin
     }
 
+    /// Nodes of no element.
+    #[must_use]
+    pub fn isolated(mesh: &Mesh) -> Vec<NodeId> {
+        isolated(mesh)
+    }
+
     /// What a user should know, one line a finding.
     #[must_use]
     pub fn notes(&self, mesh: &Mesh) -> Vec<String> {

@@ -4,7 +4,7 @@ use super::intake::{Groups, Intake, Solver};
 use super::names::NameRule;
 use crate::element::Cell;
 use crate::formats::options::{Encoding, Version};
-use crate::formats::{msh, vtk};
+use crate::formats::{mfem, msh, vtk};
 use crate::mesh::Mesh;
 
 const ALL: &[(Cell, usize)] =
@@ -54,20 +54,29 @@ pub static SOLVERS: &[Solver] = &[
     Solver {
         name: "mfem",
         title: "MFEM 4.10",
-        intakes: &[Intake {
-            version: Version::V2_2,
-            cells: &[
-                (Cell::Triangle, 4),
-                (Cell::Quad, 4),
-                (Cell::Tet, 4),
-                (Cell::Pyramid, 2),
-                (Cell::Prism, 4),
-                (Cell::Hex, 4),
-            ],
-            groups: Some(ONE_EACH),
-            notes: "numbers of groups as attributes",
-            ..MSH
-        }],
+        intakes: &[
+            Intake {
+                format: &mfem::FORMAT,
+                endings: &["mesh", "mfem"],
+                groups: Some(Groups { one_each: false, ..ONE_EACH }),
+                notes: "numbers of groups as attributes, their names as attribute sets",
+                ..MSH
+            },
+            Intake {
+                version: Version::V2_2,
+                cells: &[
+                    (Cell::Triangle, 4),
+                    (Cell::Quad, 4),
+                    (Cell::Tet, 4),
+                    (Cell::Pyramid, 2),
+                    (Cell::Prism, 4),
+                    (Cell::Hex, 4),
+                ],
+                groups: Some(ONE_EACH),
+                notes: "numbers of groups as attributes, without names",
+                ..MSH
+            },
+        ],
     },
     Solver {
         name: "ngsolve",
