@@ -19,8 +19,8 @@ pub struct Format {
     /// Endings of its files' names, without the dot, the usual one first.
     pub endings: &'static [&'static str],
     pub(super) detect: fn(&Head) -> Verdict,
-    /// How it is read.
-    pub reader: Reader,
+    /// How it is read, where it is.
+    pub reader: Option<Reader>,
     /// How it is written, where it is.
     pub writer: Option<Writer>,
 }

@@ -1,5 +1,6 @@
 //! What files of a format do not hold of a mesh, told when there is something to lose.
 
+use super::assembly::VOLUME_NAME;
 use crate::element::Order;
 use crate::mesh::{Mesh, Skin};
 
@@ -18,6 +19,8 @@ pub(super) enum Loss {
     Isolated,
     /// Names of groups.
     Names,
+    /// Names of groups of cells.
+    CellGroups,
     /// Numbers of groups that are not those of their entities.
     GroupNumbers,
     /// Pairs of periodic entities.
@@ -43,6 +46,10 @@ impl Loss {
             Loss::NodeOrder => usize::from(mesh.order() > Order::LINEAR),
             Loss::Isolated => Skin::isolated(mesh).len(),
             Loss::Names => mesh.physical_names().len(),
+            Loss::CellGroups => {
+                let own = mesh.physical_names().iter();
+                own.filter(|own| usize::from(own.dimension) == mesh.dimension() && own.name != VOLUME_NAME).count()
+            }
             Loss::GroupNumbers => {
                 let other = |key| mesh.physical_tags_of(key).iter().any(|tag| *tag != key.tag);
                 mesh.blocks().iter().filter(|block| other(block.entity)).count()
@@ -63,6 +70,7 @@ impl Loss {
             Loss::NodeOrder => "the nodes stand by vertex, edge, face and cell in the file".to_owned(),
             Loss::Isolated => format!("{count} nodes belong to no cell and have no place in the file"),
             Loss::Names => format!("the names of {count} groups have no place in the file"),
+            Loss::CellGroups => format!("the names of {count} groups of cells have no place in the file"),
             Loss::GroupNumbers => "numbers of groups have no place in the file".to_owned(),
             Loss::Periodic => format!("{count} periodic pairs of entities have no place in the file"),
             Loss::Conditions => format!("the kinds of {count} boundary conditions have no place in the file"),

@@ -15,6 +15,8 @@ mod foreign;
 mod format;
 mod gmf;
 mod grid_layout;
+#[cfg(feature = "cgns")]
+mod hopr;
 mod loss;
 mod mfem;
 pub mod msh;
@@ -78,7 +80,8 @@ pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Mesh, Error> {
     let input = Input::open(path)?;
     let format = detect(&input.head()).map_err(|refusal| refused(refusal.reason))?;
     options.check_length(input.length).map_err(refused)?;
-    let mut mesh = (format.reader.read)(input, options)?;
+    let Some(reader) = &format.reader else { return Err(refused(format!("{} is written only", format.name))) };
+    let mut mesh = (reader.read)(input, options)?;
     names::clean(&mut mesh);
     crossed::uncross(&mut mesh);
     repeats::check(&mut mesh).map_err(|flaw| flaw.of(path))?;

@@ -4,6 +4,8 @@ use std::fmt::Write as _;
 
 #[cfg(feature = "cgns")]
 use super::cgns;
+#[cfg(feature = "cgns")]
+use super::hopr;
 use super::format::{Format, Holds};
 use super::{gmf, mfem, msh, plot3d, su2, ugrid, vtk};
 use crate::element::Cell;
@@ -13,6 +15,8 @@ pub static REGISTRY: &[&Format] = &[
     &msh::FORMAT,
     #[cfg(feature = "cgns")]
     &cgns::FORMAT,
+    #[cfg(feature = "cgns")]
+    &hopr::FORMAT,
     &mfem::FORMAT,
     &gmf::FORMAT,
     &ugrid::FORMAT,
@@ -30,7 +34,8 @@ pub(super) fn written() -> impl Iterator<Item = &'static Format> {
 /// Names of the formats that are read: `Gmsh MSH, CGNS or VTU`, with the given conjunction.
 #[must_use]
 pub fn readable(conjunction: &str) -> String {
-    listed(REGISTRY.iter().map(|format| format.name.to_owned()), conjunction)
+    let read = REGISTRY.iter().filter(|format| format.reader.is_some());
+    listed(read.map(|format| format.name.to_owned()), conjunction)
 }
 
 /// Endings of the files that are written and what they are good for: `.msh or .cgns for solvers, .vtu for pictures`.
@@ -65,9 +70,11 @@ pub fn table() -> String {
     let mut text = "| format | names end in | read | written |\n|---|---|---|---|\n".to_owned();
     for format in REGISTRY {
         let endings = listed(dotted(format).map(|ending| format!("`{ending}`")), "or");
-        let written = format.writer.as_ref().map_or_else(|| "-".to_owned(), |writer| told(&writer.holds));
+        let held = |holds: Option<&Holds>| holds.map_or_else(|| "-".to_owned(), told);
+        let read = held(format.reader.as_ref().map(|reader| &reader.holds));
+        let written = held(format.writer.as_ref().map(|writer| &writer.holds));
         // A string takes what is written to it.
-        let _ = writeln!(text, "| {} | {endings} | {} | {written} |", format.name, told(&format.reader.holds));
+        let _ = writeln!(text, "| {} | {endings} | {read} | {written} |", format.name);
     }
     text
 }

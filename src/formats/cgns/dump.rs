@@ -34,7 +34,7 @@ pub(super) fn open(path: &Path) -> hdf5::Result<hdf5::File> {
 
 /// Creates a file, or empties the one that has the name. All of it is closed with it, and arrays are handed to the system when they are
 /// written, not when a handle is dropped, where nobody would hear that it refused.
-pub(super) fn create(path: &Path) -> hdf5::Result<hdf5::File> {
+pub(in crate::formats) fn create(path: &Path) -> hdf5::Result<hdf5::File> {
     hdf5::FileBuilder::new()
         .with_fapl(|access| access.file_locking(false).fclose_degree(FileCloseDegree::Strong).sieve_buf_size(0))
         .create(path)

@@ -33,20 +33,21 @@ use crate::mesh::Mesh;
 use fault::CgnsFault;
 
 pub use child::{READER_SUBCOMMAND, serve_reader};
+pub(super) use dump::create;
 
 /// CGNS on HDF5.
 pub(super) static FORMAT: Format = Format {
     name: "CGNS",
     endings: &["cgns"],
     detect,
-    reader: Reader {
+    reader: Some(Reader {
         holds: Holds {
             notes: "unstructured zones; one type a section or MIXED, with or without offsets; conditions by list, range, \
                     vertices, family; zones joined; ADF where adf2hdf is installed",
             ..HOLDS
         },
         read,
-    },
+    }),
     writer: Some(Writer {
         holds: Holds {
             notes: "one zone, one section a type; conditions, families, numbers of groups and entities (`Ordinal_t`)",

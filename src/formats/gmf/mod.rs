@@ -31,14 +31,14 @@ pub(super) static FORMAT: Format = Format {
     name: "INRIA GMF",
     endings: &["meshb", "mesh"],
     detect,
-    reader: Reader {
+    reader: Some(Reader {
         holds: Holds {
             notes: "versions 1 to 4, binary and text; references as entity tags; `VerticesOnGeometric*` as classification and \
                     parameters of nodes",
             ..HOLDS
         },
         read: open,
-    },
+    }),
     writer: Some(Writer {
         holds: Holds {
             notes: "`.meshb` binary, of version 2, or 3 and 4 where the size needs it; `.mesh` text; with `...Ordering` keywords",

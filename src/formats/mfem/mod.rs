@@ -26,14 +26,14 @@ pub(super) static FORMAT: Format = Format {
     name: "MFEM",
     endings: &["mfem"],
     detect,
-    reader: Reader {
+    reader: Some(Reader {
         holds: Holds {
             notes: "also as `.mesh`; versions 1.0 to 1.3; nodes of H1 and L2 spaces on Gauss-Lobatto, Gauss-Legendre or even points; \
                     attributes as groups, named by attribute sets",
             ..HOLDS
         },
         read: |input, _| read::read(input.content, input.length).map_err(|flaw| flaw.of(input.path)),
-    },
+    }),
     writer: Some(Writer {
         holds: Holds {
             notes: "`.mesh` by `--for mfem`; 1.3 with names, else 1.0; nodes on even points in an H1 space, in an L2 space where \

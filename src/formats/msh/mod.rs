@@ -45,10 +45,10 @@ pub(super) static FORMAT: Format = Format {
     name: "Gmsh MSH",
     endings: &["msh"],
     detect,
-    reader: Reader {
+    reader: Some(Reader {
         holds: Holds { notes: "4.1 and 2.2, text and binary", ..HOLDS },
         read: |input, _| read(input.content, input.length).map_err(|flaw| flaw.of(input.path)),
-    },
+    }),
     writer: Some(Writer {
         holds: Holds { notes: "4.1, `--msh-version 2.2`, `--ascii`", ..HOLDS },
         loses: &[Loss::Conditions, Loss::Zones],

@@ -23,7 +23,7 @@ pub(super) static FORMAT: Format = Format {
     name: "PLOT3D",
     endings: &["x", "xyz", "p3d", "p3dfmt", "p3dbin", "plot3d", "g", "grd", "gin"],
     detect: |head| if FORMAT.is_name(head.path) { Verdict::ByName } else { Verdict::No },
-    reader: Reader {
+    reader: Some(Reader {
         holds: Holds {
             highest: Order::LINEAR,
             cells: &[Cell::Quad, Cell::Hex],
@@ -33,7 +33,7 @@ pub(super) static FORMAT: Format = Format {
             notes: "blocks as hexes; text, C and Fortran binary of either byte order and precision, one or several blocks, iblank",
         },
         read,
-    },
+    }),
     writer: None,
 };
 

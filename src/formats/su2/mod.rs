@@ -1,4 +1,4 @@
-//! SU2's native meshes, read: text, boundary elements by marker, elements of higher order as its finite-element solver has them.
+//! SU2's native meshes, read and written: text, boundary elements by marker, elements of higher order as its finite-element solver has them.
 //!
 //! A file is a row of lines `KEY= value`; some keys count lines of numbers that follow them. Sections that say nothing of the mesh
 //! (boxes for deformation, periodic maps, old markers for communication) are passed over with a note, as the solver does.
@@ -8,10 +8,12 @@ mod file;
 #[cfg(test)]
 mod tests;
 mod type_code;
+mod write;
 mod zone;
 
 use super::detect::{Head, Verdict};
-use super::format::{Format, Holds, Reader};
+use super::format::{Format, Holds, Reader, Writer};
+use super::loss::Loss;
 use crate::element::{Cell, Order};
 
 /// The native format of the solver SU2.
@@ -19,7 +21,7 @@ pub(super) static FORMAT: Format = Format {
     name: "SU2",
     endings: &["su2"],
     detect,
-    reader: Reader {
+    reader: Some(Reader {
         holds: Holds {
             highest: Order::MAX,
             cells: &Cell::ALL,
@@ -30,8 +32,27 @@ pub(super) static FORMAT: Format = Format {
                     writes them; FFD, periodic and send/receive sections passed over",
         },
         read: |input, _| file::read(input.content, input.length).map_err(|flaw| flaw.of(input.path)),
-    },
-    writer: None,
+    }),
+    writer: Some(Writer {
+        holds: Holds {
+            highest: Order::MAX,
+            cells: &Cell::ALL,
+            dimensions: &[2, 3],
+            names: true,
+            fields: false,
+            notes: "orders from 2 on as SU2's finite-element solver reads them; volumes that share no points as zones",
+        },
+        loses: &[
+            Loss::Lower,
+            Loss::NodeNumbers,
+            Loss::CellGroups,
+            Loss::GroupNumbers,
+            Loss::Periodic,
+            Loss::Conditions,
+            Loss::Parameters,
+        ],
+        write: |part, mesh, _| part.stream(|out| write::write(out, mesh)),
+    }),
 };
 
 /// Whether the first line that is no comment is SU2's.

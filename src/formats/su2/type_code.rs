@@ -29,6 +29,13 @@ pub(super) fn meaning(code: i64) -> Option<(Cell, Order)> {
     Some((Cell::ALL.into_iter().find(is)?, order))
 }
 
+/// The type number of an element.
+pub(super) fn of(cell: Cell, order: Order) -> Option<usize> {
+    // VTK's classic wedge, which this program does not write for VTK.
+    let linear = if cell == Cell::Prism { 13 } else { type_code::of(cell, Order::LINEAR)? };
+    Some(usize::from(linear) + 100 * (order.get() - 1))
+}
+
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
@@ -40,6 +47,9 @@ mod tests {
         assert_eq!(meaning(12), Some((Cell::Hex, order(1))));
         assert_eq!(meaning(105), Some((Cell::Triangle, order(2))));
         assert_eq!(meaning(30_310), Some((Cell::Tet, order(4))));
+        for cell in Cell::ALL.into_iter().filter(|&cell| cell != Cell::Point) {
+            assert!(Order::all().all(|p| meaning(of(cell, p).unwrap() as i64) == Some((cell, p))), "{cell}");
+        }
         assert_eq!([meaning(7), meaning(-5), meaning(512), meaning(i64::MAX)], [None; 4]);
     }
 

@@ -28,7 +28,7 @@ pub(super) static FORMAT: Format = Format {
     name: "UGRID",
     endings: &["ugrid", "ugrid64"],
     detect: |head| if FORMAT.is_name(head.path) { Verdict::ByName } else { Verdict::No },
-    reader: Reader {
+    reader: Some(Reader {
         holds: Holds {
             highest: Order::LINEAR,
             cells: &[Cell::Triangle, Cell::Quad, Cell::Tet, Cell::Pyramid, Cell::Prism, Cell::Hex],
@@ -39,7 +39,7 @@ pub(super) static FORMAT: Format = Format {
                     conditions from the `.mapbc` file beside it",
         },
         read: open,
-    },
+    }),
     writer: None,
 };
 

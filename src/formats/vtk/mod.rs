@@ -20,7 +20,7 @@ pub(super) static VTU: Format = Format {
     name: "VTU",
     endings: &["vtu"],
     detect,
-    reader: Reader {
+    reader: Some(Reader {
         holds: Holds {
             notes: "text, base64, appended raw and base64; zlib, LZ4, LZMA; Lagrange cells, pyramids of P1 only",
             ..HOLDS
@@ -29,7 +29,7 @@ pub(super) static VTU: Format = Format {
             let path = input.path;
             xml::read(&input.whole()?, options.memory()).map_err(|flaw| flaw.of(path))
         },
-    },
+    }),
     writer: Some(Writer {
         holds: Holds {
             fields: true,
@@ -47,10 +47,10 @@ pub(super) static LEGACY: Format = Format {
     name: "legacy VTK",
     endings: &["vtk"],
     detect: |head| if head.text.starts_with(b"# vtk DataFile") { Verdict::ByContent } else { Verdict::No },
-    reader: Reader {
+    reader: Some(Reader {
         holds: Holds { notes: "text and binary, 2.0 to 5.1; pyramids of P1 only", ..HOLDS },
         read: |input, _| legacy::read(input.content, input.length).map_err(|flaw| flaw.of(input.path)),
-    },
+    }),
     writer: None,
 };
 

@@ -9,7 +9,7 @@ pub(super) const LAGRANGE_HEX: u8 = 72;
 ///
 /// Linear elements are the classic ones, except the prism: which way VTK's own wedge points has changed between
 /// versions, and the Lagrange wedge's has not.
-pub(super) fn of(cell: Cell, order: Order) -> Option<u8> {
+pub(in crate::formats) fn of(cell: Cell, order: Order) -> Option<u8> {
     let linear = order == Order::LINEAR;
     match cell {
         Cell::Point => Some(1),
