@@ -62,11 +62,7 @@ impl Files {
     }
 
     /// Adds the mesh that is written, and the solver that it is for, where they are given.
-    pub(super) fn writes_mesh(
-        mut self,
-        path: Option<impl Into<PathBuf>>,
-        solver: Option<&'static Solver>,
-    ) -> Files {
+    pub(super) fn writes_mesh(mut self, path: Option<impl Into<PathBuf>>, solver: Option<&'static Solver>) -> Files {
         self.solver = solver;
         self.output = path.map(Into::into);
         let output = self.output.clone();

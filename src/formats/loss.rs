@@ -66,7 +66,9 @@ impl Loss {
         match self {
             Loss::Lower => format!("{count} elements below the boundary (points, lines) have no place in the file"),
             Loss::Strays => format!("{count} boundary elements are no side of any cell and have no place in the file"),
-            Loss::NodeNumbers => format!("{count} nodes have other numbers in the file, which counts them in their order"),
+            Loss::NodeNumbers => {
+                format!("{count} nodes have other numbers in the file, which counts them in their order")
+            }
             Loss::NodeOrder => "the nodes stand by vertex, edge, face and cell in the file".to_owned(),
             Loss::Isolated => format!("{count} nodes belong to no cell and have no place in the file"),
             Loss::Names => format!("the names of {count} groups have no place in the file"),

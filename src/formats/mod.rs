@@ -180,7 +180,8 @@ pub fn write_for(path: &Path, mesh: &Mesh, solver: &Solver, options: &WriteOptio
 fn write_as(format: &Format, path: &Path, mesh: &Mesh, options: &WriteOptions<'_>) -> Result<Vec<String>, Error> {
     let refused = |reason| Error::Inexpressible { file: path.to_path_buf(), reason };
     let Some(writer) = &format.writer else { return Err(refused(format!("{} is not written", format.name))) };
-    let (mesh, left_out) = if options.physical_only { solver::physical_only(mesh) } else { (Cow::Borrowed(mesh), None) };
+    let (mesh, left_out) =
+        if options.physical_only { solver::physical_only(mesh) } else { (Cow::Borrowed(mesh), None) };
     if let Some(reason) = writer.holds.refusal(&mesh) {
         return Err(refused(reason));
     }

@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 
 #[cfg(feature = "cgns")]
 use super::cgns;
+use super::format::{Format, Holds};
 #[cfg(feature = "cgns")]
 use super::hopr;
-use super::format::{Format, Holds};
 use super::{gmf, mfem, msh, plot3d, su2, ugrid, vtk};
 use crate::element::Cell;
 

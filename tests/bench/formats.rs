@@ -43,7 +43,7 @@ fn table() -> Result<(), Box<dyn Error>> {
         ];
         for (name, file, options) in written {
             let path = folder.path().join(file);
-            let seconds = best(|| Ok(formats::write(&path, &mesh, &options)?))?;
+            let seconds = best(|| Ok(_ = formats::write(&path, &mesh, &options)?))?;
             row(&format!("{name}, P{order}"), &path, Some(seconds))?;
         }
         if order == 1 {

@@ -297,7 +297,7 @@ fn linear_nodes_off_the_cad() {
         let dir = tempfile::tempdir().unwrap();
         let file = dir.path().join(name);
         match name {
-            "mesh.msh" => formats::write(&file, &mesh, &WriteOptions::default()).unwrap(),
+            "mesh.msh" => _ = formats::write(&file, &mesh, &WriteOptions::default()).unwrap(),
             _ => crate::common::ugrid::write_b4(&file, &mesh),
         }
         let (output, report) = link_file(&case, &file, &[]);

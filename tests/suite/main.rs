@@ -41,6 +41,7 @@ mod samples;
 mod schema;
 mod skin;
 mod sliding;
+mod solvers;
 mod sphere_order;
 mod stop;
 mod thin_edges;

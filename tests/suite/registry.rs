@@ -28,14 +28,19 @@ fn help_names_every_format_and_every_ending_that_is_written() {
     };
     let convert = help("convert");
     for format in REGISTRY {
-        assert!(convert.contains(format.name) && help("check").contains(format.name), "{}: {convert}", format.name);
+        let read = format.reader.is_some();
+        assert!(
+            !read || convert.contains(format.name) && help("check").contains(format.name),
+            "{}: {convert}",
+            format.name
+        );
         for ending in format.endings.iter().filter(|_| format.writer.is_some()) {
             assert!(convert.contains(&format!(".{ending}")), "{ending}: {convert}");
         }
     }
 }
 
-/// No two formats take the same name, and each that is written is read too.
+/// No two formats take the same name.
 #[test]
 fn endings_are_unambiguous() {
     let mut endings: Vec<&str> = REGISTRY.iter().flat_map(|format| format.endings).copied().collect();

@@ -17,7 +17,7 @@ mod write;
 #[cfg(test)]
 mod tests;
 
-use super::detect::{Head, Refusal, Verdict};
+use super::detect::{Head, Verdict};
 use super::error::Error;
 use super::format::{Format, Holds, Input, Reader, Writer};
 use super::loss::Loss;
@@ -59,10 +59,6 @@ fn detect(head: &Head) -> Verdict {
     let first = head.lines().into_iter().find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default();
     if first.starts_with("MeshVersionFormatted") || header::is_binary(head.bytes) {
         return Verdict::ByContent;
-    }
-    if first.starts_with("MFEM ") {
-        let reason = "an MFEM mesh, which is not read; let MFEM write it as VTU (Mesh::PrintVTU)";
-        return Verdict::Refused(Refusal::unread(reason));
     }
     Verdict::No
 }

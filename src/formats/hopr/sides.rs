@@ -74,12 +74,14 @@ pub(super) fn of(mesh: &Mesh) -> Result<Sides, String> {
             let condition = by_face.get(&FaceKey::new(&corners)).copied();
             // A side of a periodic pair meets the other where its corners' images are.
             let image: Option<Vec<NodeId>> = corners.iter().map(|corner| images.get(corner).copied()).collect();
-            let is_pair = condition.is_some_and(|place| conditions[place].kind[0] == PERIODIC && conditions[place].kind[3] > 0);
+            let is_pair =
+                condition.is_some_and(|place| conditions[place].kind[0] == PERIODIC && conditions[place].kind[3] > 0);
             let meeting = image.filter(|_| is_pair).unwrap_or_else(|| corners.clone());
             let at = [n as i32 + 1, m as i32 + 1];
             let mut side = Side { corners: corners.len(), number: 0, neighbour: None, condition };
             if let Some(first) = met.remove(&FaceKey::new(&meeting)) {
-                let flip = first.corners.iter().position(|corner| *corner == meeting[0]).map_or(0, |place| place as i32 + 1);
+                let flip =
+                    first.corners.iter().position(|corner| *corner == meeting[0]).map_or(0, |place| place as i32 + 1);
                 side.number = -all[first.place].number;
                 side.neighbour = Some([first.at[0], first.at[1], flip]);
                 all[first.place].neighbour = Some([at[0], at[1], 0]);
@@ -114,7 +116,9 @@ fn complete(all: &[Side], conditions: &mut [Condition]) -> Result<(), String> {
                 return Err(format!("{outer} sides of the periodic patch {name} have no partner on the other"));
             }
         } else if inner > 0 && outer > 0 {
-            return Err(format!("{inner} sides of the patch {name} are between cells, {outer} on the boundary; part it"));
+            return Err(format!(
+                "{inner} sides of the patch {name} are between cells, {outer} on the boundary; part it"
+            ));
         } else if inner > 0 {
             condition.kind[0] = INNER;
         }
@@ -133,9 +137,12 @@ fn conditions(mesh: &Mesh) -> (Vec<Condition>, FxHashMap<FaceKey, usize>) {
     }
     for block in mesh.side_blocks() {
         let name = name(mesh, block);
-        let place = conditions.iter().position(|own| own.name == name).unwrap_or_else(|| {
-            let pair = pairs.get(&block.entity).copied();
-            let kind = pair.map_or([WALL, 0, 0, 0], |pair| [PERIODIC, 0, 0, pair]);
+        let kind = pairs.get(&block.entity).map_or([WALL, 0, 0, 0], |&pair| [PERIODIC, 0, 0, pair]);
+        let known = conditions.iter().position(|own| own.name == name && own.kind == kind);
+        let place = known.unwrap_or_else(|| {
+            // Both patches of a pair may have one name.
+            let taken = conditions.iter().any(|own| own.name == name);
+            let name = if taken { format!("{name}_{}", block.entity.tag) } else { name };
             conditions.push(Condition { name, kind });
             conditions.len() - 1
         });
@@ -154,7 +161,8 @@ fn images(mesh: &Mesh) -> FxHashMap<NodeId, NodeId> {
 /// The name of the first group of a block's elements, else of its entity.
 fn name(mesh: &Mesh, block: &Block) -> String {
     let tag = block.physical_tags.first().copied().or_else(|| mesh.physical_tags_of(block.entity).first().copied());
-    let is = |own: &&PhysicalName| own.dimension == block.entity.dimension && Some(own.tag) == tag.map(i32::saturating_abs);
+    let is =
+        |own: &&PhysicalName| own.dimension == block.entity.dimension && Some(own.tag) == tag.map(i32::saturating_abs);
     let known = mesh.physical_names().iter().find(is).map(|own| own.name.clone());
     known.unwrap_or_else(|| block.entity.to_string().replace(' ', "_"))
 }

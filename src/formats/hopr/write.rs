@@ -48,7 +48,9 @@ pub(super) fn write(path: &Path, mesh: &Mesh) -> Result<(), Unwritten> {
         root.new_attr::<i32>().shape([1]).create(name)?.write_raw(&[value as i32])?;
     }
     root.new_attr::<f64>().shape([1]).create("Version")?.write_raw(&[1.0])?;
-    root.new_attr::<FixedAscii<NAME>>().create("HoprVersion")?.write_scalar(&padded(VERSION.0)?)?;
+    let version =
+        FixedAscii::<5>::from_ascii(VERSION.0).map_err(|error| Unwritten::Inexpressible(error.to_string()))?;
+    root.new_attr::<FixedAscii<5>>().create("HoprVersion")?.write_scalar(&version)?;
     // Here the library tells of what it could not write; when a handle is dropped it does not.
     file.flush()?;
     file.close()?;
@@ -62,7 +64,8 @@ fn raw<T: H5Type>(file: &hdf5::File, name: &str, shape: &[usize], values: &[T]) 
 
 /// A text of the length that names have, with blanks behind.
 fn padded(text: &str) -> Result<FixedAscii<NAME>, Unwritten> {
-    let plain: String = text.chars().map(|c| if c.is_ascii_graphic() || c == ' ' { c } else { '_' }).take(NAME).collect();
+    let plain: String =
+        text.chars().map(|c| if c.is_ascii_graphic() || c == ' ' { c } else { '_' }).take(NAME).collect();
     let told = |_| Unwritten::Inexpressible(format!("the name {text:?} cannot be written as ASCII"));
     FixedAscii::from_ascii(&format!("{plain:NAME$}")).map_err(told)
 }
@@ -104,7 +107,13 @@ fn side_info(file: &hdf5::File, order: Order, sides: &Sides) -> Result<(), Unwri
             (corners, _) => 20 + corners,
         };
         let [element, place, flip] = side.neighbour.unwrap_or([0; 3]);
-        rows.extend([kind, side.number, element, 10 * place + flip, side.condition.map_or(0, |place| place as i32 + 1)]);
+        rows.extend([
+            kind,
+            side.number,
+            element,
+            10 * place + flip,
+            side.condition.map_or(0, |place| place as i32 + 1),
+        ]);
     }
     raw(file, "SideInfo", &[sides.all.len(), 5], &rows)?;
     let names = sides.conditions.iter().map(|own| padded(&own.name)).collect::<Result<Vec<_>, _>>()?;

@@ -103,7 +103,8 @@ impl Collection {
             return None;
         }
         let c = self.points.of(p);
-        let points: Vec<[f64; 3]> = lattice(cell, self.order).iter().map(|at| place(cell, p, &c, at.map(usize::from))).collect();
+        let points: Vec<[f64; 3]> =
+            lattice(cell, self.order).iter().map(|at| place(cell, p, &c, at.map(usize::from))).collect();
         Some(basis::from_points(cell, self.order, &points))
     }
 

@@ -56,19 +56,13 @@ pub(super) static FORMAT: Format = Format {
     }),
 };
 
-const HOLDS: Holds = Holds {
-    highest: Order::MAX,
-    cells: &Cell::ALL,
-    dimensions: &[2, 3],
-    names: true,
-    fields: false,
-    notes: "",
-};
+const HOLDS: Holds =
+    Holds { highest: Order::MAX, cells: &Cell::ALL, dimensions: &[2, 3], names: true, fields: false, notes: "" };
 
 /// Forms of MFEM meshes that are not read, and what brings them into one that is.
 const UNREAD: [(&str, &str); 3] = [
     ("MFEM NC mesh", "of elements cut in part (non-conforming), which cannot be curved as they are"),
-    ("MFEM NURBS mesh", "of NURBS patches; read it in MFEM, call SetCurvature and save it"),
+    ("MFEM NURBS", "of NURBS patches; read it in MFEM, call SetCurvature and save it"),
     ("MFEM INLINE mesh", "of a box, described in words; read it in MFEM and save it"),
 ];
 
@@ -81,6 +75,9 @@ fn detect(head: &Head) -> Verdict {
             Verdict::Refused(Refusal::unread("an MFEM mesh v1.1, non-conforming, which cannot be curved as it is"))
         }
         None if first.starts_with("MFEM mesh v1.") => Verdict::ByContent,
+        None if first.starts_with("MFEM ") => Verdict::Refused(Refusal::unread(
+            "an MFEM file of a kind that is not read; save the mesh in MFEM (Mesh::Save)",
+        )),
         None => Verdict::No,
     }
 }

@@ -56,7 +56,8 @@ impl Layout {
     pub(super) fn place(&self, values: &[DVec3], cells: &Elements, sides: &Elements) -> Result<Placed, TooMany> {
         let size = values.iter().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[a, b], &x| [a.min(x), b.max(x)]);
         let tolerance = SAME * (size[1] - size[0]).length();
-        let mut joint = Joint { first: vec![None; self.numbering.count()], others: FxHashMap::default(), points: Vec::new() };
+        let mut joint =
+            Joint { first: vec![None; self.numbering.count()], others: FxHashMap::default(), points: Vec::new() };
         let mut matrices: FxHashMap<Cell, Option<Vec<f64>>> = FxHashMap::default();
         let mut placed = Placed { points: Vec::new(), cells: Vec::new(), sides: Vec::new(), apart: 0 };
         let mut places = Vec::new();

@@ -175,7 +175,9 @@ impl<R: BufRead> File<R> {
         if word != "nodes" {
             let axes = word.parse::<usize>().ok().filter(|axes| (2..=3).contains(axes));
             let Some(axes) = axes else {
-                return Err(self.scanner.flaw(Fault::Number { what: "the dimension of the space, 2 or 3", found: word }));
+                return Err(self
+                    .scanner
+                    .flaw(Fault::Number { what: "the dimension of the space, 2 or 3", found: word }));
             };
             let points = self.values(vertices, axes, true)?;
             let mut assembly = Assembly::new(points).map_err(|fault| self.scanner.flaw(fault))?;
@@ -194,7 +196,13 @@ impl<R: BufRead> File<R> {
         self.curved(placed, dimension, space.order, [&cells, &sides])
     }
 
-    fn curved(&self, placed: Placed, dimension: usize, order: Order, [cells, sides]: [&Elements; 2]) -> Result<Assembly, Flaw> {
+    fn curved(
+        &self,
+        placed: Placed,
+        dimension: usize,
+        order: Order,
+        [cells, sides]: [&Elements; 2],
+    ) -> Result<Assembly, Flaw> {
         let mut assembly = Assembly::new(placed.points).map_err(|fault| self.scanner.flaw(fault))?;
         assembly.parts.order = order;
         let mut rest = &placed.cells[..];

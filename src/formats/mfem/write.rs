@@ -127,7 +127,8 @@ fn nodes(out: &mut impl Write, mesh: &Mesh, corners: &Corners) -> Result<(), Unw
         }
         return Ok(());
     }
-    let at: Vec<(Cell, Vec<NodeId>)> = mesh.cells().iter().map(|cell| (cell.cell, corners.at(cell.cell, cell.nodes))).collect();
+    let at: Vec<(Cell, Vec<NodeId>)> =
+        mesh.cells().iter().map(|cell| (cell.cell, corners.at(cell.cell, cell.nodes))).collect();
     let elements = at.iter().map(|(cell, corners)| (*cell, &corners[..]));
     let numbering = Numbering::new(mesh.order(), corners.nodes.len(), elements);
     let (mut nodes, mut places): (Vec<Option<NodeId>>, Vec<usize>) = (vec![None; numbering.count()], Vec::new());

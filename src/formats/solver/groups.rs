@@ -9,7 +9,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::intake::Groups;
 use crate::element::{Cell, side_nodes};
 use crate::formats::assembly::VOLUME_NAME;
-use crate::mesh::{Block, EntityKey, FaceKey, Mesh, NodeId, Parts, Periodic, PhysicalName};
+use crate::mesh::{Block, EntityKey, FaceKey, Mesh, Parts, Periodic, PhysicalName};
 
 /// The mesh without the elements below its cells that belong to no physical group, and how many they were.
 pub(in crate::formats) fn physical_only(mesh: &Mesh) -> (Cow<'_, Mesh>, Option<String>) {
@@ -27,7 +27,8 @@ pub(in crate::formats) fn physical_only(mesh: &Mesh) -> (Cow<'_, Mesh>, Option<S
 
 /// Numbers of the physical groups of a block's elements, each once, without the sign of their orientation.
 fn tags(mesh: &Mesh, block: &Block) -> Vec<i32> {
-    let own = if block.physical_tags.is_empty() { mesh.physical_tags_of(block.entity) } else { block.physical_tags.clone() };
+    let own =
+        if block.physical_tags.is_empty() { mesh.physical_tags_of(block.entity) } else { block.physical_tags.clone() };
     own.iter().map(|tag| tag.saturating_abs()).filter(|&tag| tag != 0).collect::<BTreeSet<i32>>().into_iter().collect()
 }
 
@@ -132,7 +133,10 @@ impl Draft<'_> {
             self.blocks.push(Named { block: own, groups });
         }
         let lower = mesh.blocks().iter().filter(|block| block.cell.dimension() + 2 <= mesh.dimension());
-        self.tell(lower.map(|block| block.tags.len()).sum(), "elements below the boundary (points, lines) are left out");
+        self.tell(
+            lower.map(|block| block.tags.len()).sum(),
+            "elements below the boundary (points, lines) are left out",
+        );
         self.tell(strays, "boundary elements are no side of any cell and are left out");
         self.tell(inner, "elements of no group between cells are left out");
         for key in unnamed {
@@ -185,7 +189,10 @@ impl Draft<'_> {
         let Some(several) = self.blocks.iter().find(|own| own.groups.len() > 1) else { return Ok(()) };
         let names: Vec<&str> = several.groups.iter().map(|(_, name)| &name[..]).collect();
         let at = several.block.entity;
-        Err(format!("{at} is in the groups {}, and the solver knows one for each element; leave it in one", names.join(", ")))
+        Err(format!(
+            "{at} is in the groups {}, and the solver knows one for each element; leave it in one",
+            names.join(", ")
+        ))
     }
 
     /// The mesh of the blocks: numbers and names of the groups, each once in all dimensions.
@@ -214,7 +221,8 @@ impl Draft<'_> {
                 used.insert(free);
                 free += 1;
                 if tag != 0 {
-                    self.notes.push(format!("the group {name} has the number {number} in place of {tag}, which another has"));
+                    self.notes
+                        .push(format!("the group {name} has the number {number} in place of {tag}, which another has"));
                 }
             }
             physical_names.push(PhysicalName { dimension, tag: number, name });
@@ -266,28 +274,28 @@ impl Draft<'_> {
 
     /// Pairs of boundary entities as pairs of groups.
     fn periodic(&mut self, entities: &BTreeMap<EntityKey, EntityKey>) -> Vec<Periodic> {
-        let mut pairs: BTreeMap<(EntityKey, i32), (Vec<f64>, BTreeSet<(NodeId, NodeId)>)> = BTreeMap::new();
+        let mut joined: BTreeMap<(EntityKey, i32), Periodic> = BTreeMap::new();
         let mut within = 0;
         for link in self.mesh.periodic() {
             let master = EntityKey { tag: link.master, ..link.slave };
-            let (Some(slave), Some(master)) = (entities.get(&link.slave), entities.get(&master)) else { continue };
-            if slave == master {
+            let (Some(&slave), Some(master)) = (entities.get(&link.slave), entities.get(&master)) else { continue };
+            if slave == *master {
                 within += 1;
                 continue;
             }
-            let own = pairs.entry((*slave, master.tag)).or_insert_with(|| (link.affine.clone(), BTreeSet::new()));
-            if own.0 != link.affine {
-                own.0 = Vec::new();
+            let new = || Periodic { slave, master: master.tag, affine: link.affine.clone(), pairs: Vec::new() };
+            let own = joined.entry((slave, master.tag)).or_insert_with(new);
+            if own.affine != link.affine {
+                own.affine = Vec::new();
             }
-            own.1.extend(&link.pairs);
+            own.pairs.extend(&link.pairs);
         }
         self.tell(within, "periodic pairs of entities are of one group, and are left out");
-        let link = |((slave, master), (affine, pairs)): ((EntityKey, i32), (Vec<f64>, BTreeSet<_>))| Periodic {
-            slave,
-            master,
-            affine,
-            pairs: pairs.into_iter().collect(),
-        };
-        pairs.into_iter().map(link).collect()
+        let mut all: Vec<Periodic> = joined.into_values().collect();
+        for own in &mut all {
+            own.pairs.sort_unstable();
+            own.pairs.dedup();
+        }
+        all
     }
 }

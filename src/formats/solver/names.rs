@@ -45,7 +45,8 @@ mod tests {
     fn names_are_what_the_rule_allows_and_differ() {
         let rule = NameRule { spaces: false, lower_case: true, ..NameRule::any(8) };
         let mut so_far = HashSet::new();
-        let names = ["Wall 1", "wall_1", "", "a name of many words", "a name of few"].map(|wish| rule.name(wish, &mut so_far));
+        let names =
+            ["Wall 1", "wall_1", "", "a name of many words", "a name of few"].map(|wish| rule.name(wish, &mut so_far));
         assert_eq!(names, ["wall_1", "wall_1_2", "unnamed", "a_name_o", "a_name_2"]);
     }
 }

@@ -3,8 +3,10 @@
 use super::intake::{Groups, Intake, Solver};
 use super::names::NameRule;
 use crate::element::Cell;
+#[cfg(feature = "cgns")]
+use crate::formats::hopr;
 use crate::formats::options::{Encoding, Version};
-use crate::formats::{mfem, msh, vtk};
+use crate::formats::{mfem, msh, su2, vtk};
 use crate::mesh::Mesh;
 
 const ALL: &[(Cell, usize)] =
@@ -46,11 +48,20 @@ pub static SOLVERS: &[Solver] = &[
             ..MSH
         }],
     },
+    #[cfg(feature = "cgns")]
     Solver {
-        name: "gmsh",
-        title: "Gmsh 4.15",
-        intakes: &[Intake { notes: "the mesh as it is", ..MSH }],
+        name: "flexi",
+        title: "FLEXI, GALAEXI and FLUXO",
+        intakes: &[Intake {
+            format: &hopr::FORMAT,
+            endings: &["h5"],
+            cells: &[(Cell::Hex, 4)],
+            groups: Some(Groups { names: NameRule::any(255), ..ONE_EACH }),
+            notes: "HOPR's format; types of boundaries are set by name in the solver's parameters",
+            ..MSH
+        }],
     },
+    Solver { name: "gmsh", title: "Gmsh 4.15", intakes: &[Intake { notes: "the mesh as it is", ..MSH }] },
     Solver {
         name: "mfem",
         title: "MFEM 4.10",
@@ -115,6 +126,17 @@ pub static SOLVERS: &[Solver] = &[
             }),
             misfit: bases_of_pyramids,
             notes: "pyramids on parallelograms only; all names in lower case; pairs of patches `periodic_NAME_l` and `periodic_NAME_r`",
+            ..MSH
+        }],
+    },
+    Solver {
+        name: "su2",
+        title: "SU2 8",
+        intakes: &[Intake {
+            format: &su2::FORMAT,
+            endings: &["su2"],
+            groups: Some(Groups { names: NameRule { spaces: false, ..NameRule::any(127) }, ..ONE_EACH }),
+            notes: "P1 for all solvers, P2 to P4 for the finite-element one (`SOLVER= FEM_...`)",
             ..MSH
         }],
     },

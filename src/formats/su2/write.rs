@@ -50,7 +50,8 @@ impl<'a> Zones<'a> {
                 joined |= zone_of[node.index()].replace(zone).is_some_and(|other| other != zone);
             }
         }
-        let cells = if joined { vec![mesh.cell_blocks().collect()] } else { by_volume.into_values().collect::<Vec<_>>() };
+        let cells =
+            if joined { vec![mesh.cell_blocks().collect()] } else { by_volume.into_values().collect::<Vec<_>>() };
         let mut zones = Zones { of_zone: vec![Vec::new(); cells.len().max(1)], cells, nodes: Vec::new() };
         for (n, zone) in zone_of.into_iter().enumerate() {
             // Nodes of no cell stand in the first zone.
@@ -61,6 +62,12 @@ impl<'a> Zones<'a> {
         }
         Ok(zones)
     }
+}
+
+/// Boundary elements of one name.
+struct Marker<'a> {
+    name: String,
+    elements: Vec<(Cell, &'a [NodeId])>,
 }
 
 fn zone(out: &mut impl Write, mesh: &Mesh, zones: &Zones, n: usize, cells: &[&Block]) -> Result<(), Unwritten> {
@@ -80,25 +87,24 @@ fn zone(out: &mut impl Write, mesh: &Mesh, zones: &Zones, n: usize, cells: &[&Bl
         point[..axes].iter().try_for_each(|x| write!(out, "{x:?} "))?;
         writeln!(out, "{place}")?;
     }
-    let mut markers: Vec<(String, Vec<&[NodeId]>, Vec<Cell>)> = Vec::new();
+    let mut markers: Vec<Marker> = Vec::new();
     for block in mesh.side_blocks() {
         let name = name(mesh, block);
         for nodes in block.elements(mesh.order()) {
             if nodes.first().is_some_and(|node| zones.nodes[node.index()].0 != n) {
                 continue;
             }
-            let place = markers.iter().position(|(own, ..)| *own == name).unwrap_or_else(|| {
-                markers.push((name.clone(), Vec::new(), Vec::new()));
+            let place = markers.iter().position(|own| own.name == name).unwrap_or_else(|| {
+                markers.push(Marker { name: name.clone(), elements: Vec::new() });
                 markers.len() - 1
             });
-            markers[place].1.push(nodes);
-            markers[place].2.push(block.cell);
+            markers[place].elements.push((block.cell, nodes));
         }
     }
     writeln!(out, "NMARK= {}", markers.len())?;
-    for (name, elements, kinds) in markers {
+    for Marker { name, elements } in markers {
         writeln!(out, "MARKER_TAG= {name}\nMARKER_ELEMS= {}", elements.len())?;
-        for (nodes, cell) in elements.into_iter().zip(kinds) {
+        for (cell, nodes) in elements {
             element(out, mesh, zones, cell, nodes)?;
             writeln!(out)?;
         }
