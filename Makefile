@@ -18,7 +18,7 @@ SAGITTA := $(TARGET)/release/sagitta
 
 # The steps of a target run in their order, also under -j.
 .NOTPARALLEL:
-.PHONY: help setup setup-build build demo venv test lint unit examples fuzz fuzz-coverage parsers bench oracle table engines picture bench-cases consumers figures reliability gauntlet-3d schema doc
+.PHONY: help setup setup-build build demo venv test lint unit examples fuzz fuzz-coverage parsers bench oracle table engines picture bench-cases consumers solvers convergence figures reliability gauntlet-3d schema doc
 
 help: ## this list
 	@echo "sagitta curves linear viscous CFD meshes onto their CAD. Targets:"
@@ -102,6 +102,14 @@ picture: build venv ## the README's picture of the weeble: fixtures/pictures/wee
 consumers: setup build ## curved meshes given to Gmsh, meshio, MFEM, PyFR, PyHOPE, VTK and cgnscheck, and what they find; minutes
 	@WANTED=tests/consumers/requirements.txt VENV=.venv-consumers PYTHON="$(PYTHON)" .ci/venv
 	.venv-consumers/bin/python tests/consumers/consume.py $(SAGITTA) | tee $(TARGET)/consumers.md
+
+solvers: setup build ## what --for writes, read and run by each solver: the table of docs/solvers.md; DOLFINX=PYTHON with dolfinx; half an hour
+	@WANTED=tests/consumers/requirements.txt VENV=.venv-consumers PYTHON="$(PYTHON)" .ci/venv
+	.venv-consumers/bin/python tests/consumers/solvers.py $(SAGITTA) $(or $(DOLFINX),-) docs/solvers.md
+
+convergence: setup build ## orders of convergence on curved and straight meshes by MFEM: docs/convergence.md and its picture; 10 minutes
+	@WANTED=tests/consumers/requirements.txt VENV=.venv-consumers PYTHON="$(PYTHON)" .ci/venv
+	.venv-consumers/bin/python tests/convergence/convergence.py $(SAGITTA) docs/convergence.md fixtures/pictures/convergence.png
 
 gauntlet-3d: build ## viscous meshes made on every CAD file in SAGITTA_CAD=DIR[:DIR], curved at P2 and P3, beside Gmsh; GAUNTLET_OPTIONS; an hour
 	@WANTED=tests/gauntlet/requirements.txt VENV=.venv-gauntlet PYTHON="$(PYTHON)" .ci/venv

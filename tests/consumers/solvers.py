@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Gives each solver the file that `--for SOLVER` writes, and runs it: the tables of docs/solvers.md.
 
-usage: solvers.py SAGITTA DOLFINX_PYTHON|- [CASE:ORDERS...] > tables
+usage: solvers.py SAGITTA DOLFINX_PYTHON|- DOCS/solvers.md|- [CASE:ORDERS...]
 
 Curves the cases, writes each result for each solver, and lets the solver read it, in a process of its own: cells, volume, patch areas
 and names are held against reference.py (relative 1e-7), which reads a text MSH 2.2 file with no reader's code. Where the solver solves,
@@ -98,20 +98,20 @@ def tables(results):
     import importlib.metadata as metadata
 
     orders, solvers = sorted({order for _, order, *_ in results}), list(ENDINGS)
-    print("| case | order | " + " | ".join(solvers) + " |\n|" + "---|" * (len(solvers) + 2))
+    lines = ["| case | order | " + " | ".join(solvers) + " |", "|" + "---|" * (len(solvers) + 2)]
     for case in dict.fromkeys(case for case, *_ in results):
         for order in orders:
             row = {solver: (verdict, why) for c, o, solver, verdict, why in results if (c, o) == (case, order)}
-            if row:
-                shown = [why if verdict == "agrees" else "-" if verdict == "not taken" else f"**{verdict}**" for verdict, why in map(row.get, solvers)]
-                print(f"| {case} | {order} | " + " | ".join(shown) + " |")
-    print()
+            shown = [why if verdict == "agrees" else "-" if verdict == "not taken" else verdict for verdict, why in map(row.get, solvers)] if row else []
+            lines += [f"| {case} | {order} | " + " | ".join(shown) + " |"] if row else []
+    lines.append("")
     for kind in ("not taken", "not run", "refused", "wrong"):
         for reason in dict.fromkeys((solver, why) for _, _, solver, verdict, why in results if verdict == kind):
             where = [f"{case} {order}" for case, order, solver, verdict, why in results if (verdict, solver, why) == (kind, *reason)]
-            print(f"* {reason[0]}, {kind}: {reason[1]} ({', '.join(where)})")
-    names = {"mfem": "mfem", "pyfr": "PyFR", "netgen-mesher": "Netgen", "ngsolve": "NGSolve", "gmsh": "Gmsh", "vtk": "VTK", "PyHOPE": "PyHOPE"}
-    print("\nVersions: " + ", ".join(f"{title} {metadata.version(name)}" for name, title in names.items()) + ".")
+            lines.append(f"* {reason[0]}, {kind}: {reason[1]} ({', '.join(where)})")
+    names = {"mfem": "PyMFEM", "pyfr": "PyFR", "ngsolve": "NGSolve", "gmsh": "Gmsh", "vtk": "VTK", "PyHOPE": "PyHOPE"}
+    lines += ["", "Versions: " + ", ".join(f"{title} {metadata.version(name)}" for name, title in names.items()) + "."]
+    return "\n".join(lines) + "\n"
 
 
 def main():
@@ -126,13 +126,19 @@ def main():
             found = {"error": f"{type(error).__name__}: {error}".strip().replace("\n", " ")[:200]}
         os.write(stdout, (json.dumps(found) + "\n").encode())
         os._exit(0)
-    sagitta, dolfinx, *cases = sys.argv[1:]
+    sagitta, dolfinx, document, *cases = sys.argv[1:]
     results = []
     for case, _, orders in (text.partition(":") for text in cases or CASES):
         for order in orders or "234":
             with tempfile.TemporaryDirectory() as folder:
                 consume(os.path.abspath(sagitta), dolfinx, case, order, folder, results)
-    tables(results)
+    text = tables(results)
+    print(text)
+    if document != "-":
+        with open(document) as file:
+            head, rest = file.read().split("<!-- solvers -->\n")
+        with open(document, "w") as file:
+            file.write(f"{head}<!-- solvers -->\n{text}<!-- /solvers -->{rest.split('<!-- /solvers -->')[1]}")
     sys.exit(any(verdict in ("refused", "wrong") for *_, verdict, _ in results))
 
 
