@@ -111,9 +111,11 @@ impl<R: BufRead> File<R> {
         match key {
             "NZONE" => self.announced = Some(self.number("the number of zones", value)?),
             "IZONE" => {
+                // The dimension may stand before the zones, and again in each.
+                let bare = self.zones.pop_if(|zone| zone.is_bare());
                 self.end_zone(notes)?;
                 self.number("a zone's number", value)?;
-                self.zones.push(Zone::default());
+                self.zones.push(Zone { dimension: bare.and_then(|zone| zone.dimension), ..Zone::default() });
             }
             "NDIME" => {
                 let dimension = match value {

@@ -44,6 +44,8 @@ fn zones_number_their_points_apart() {
     let names: Vec<&str> = mesh.physical_names().iter().map(|name| name.name.as_str()).collect();
     assert!(["lower", "other", "rest"].iter().all(|name| names.contains(name)), "{names:?}");
     let one = parsed(&format!("NZONE= 2\n{}", zone(1))).unwrap_err();
+    let ahead = parsed(&format!("NDIME= 3\nNZONE= 2\n{}{}", zone(1), zone(2))).unwrap();
+    assert_eq!(ahead.counts(), mesh.counts(), "the dimension may stand before the zones");
     assert!(one.contains("announces 2 zones, but has 1"), "{one}");
 }
 

@@ -22,6 +22,13 @@ pub(super) struct Zone {
     pub(super) markers_found: u64,
 }
 
+impl Zone {
+    /// Whether nothing has been said of it but its dimension.
+    pub(super) fn is_bare(&self) -> bool {
+        self.points.is_none() && self.cells.is_none() && self.announced.is_none() && self.markers_found == 0
+    }
+}
+
 /// Elements as they stand in the file.
 #[derive(Default)]
 pub(super) struct Elements {
