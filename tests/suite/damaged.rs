@@ -427,7 +427,7 @@ fn foreign_meshes_are_named_with_a_remedy() {
         ("a.med", hdf5, "MED", "gmsh"),
         ("a.ccm", adf, "CCM", "CGNS"),
         ("a.msh.gz", &[0x1f, 0x8b, 8, 0], "compressed", "unpack"),
-        ("a.mesh", b"MFEM mesh v1.0\n", "MFEM", "VTU"),
+        ("a.mesh", b"MFEM NURBS mesh v1.0\n", "MFEM", "SetCurvature"),
         ("a.exo", b"CDF\x01\x00", "Exodus", "meshio"),
     ];
     let mut files: Vec<(PathBuf, &str, &str)> =

@@ -170,6 +170,7 @@ fn damaged_files_are_answered() {
         ("legacy VTK", &[".vtk"], most),
         ("PLOT3D", &[".x"], most),
         ("GMF", &[".mesh", ".meshb"], most),
+        ("MFEM", &[".mfem"], most),
         ("CGNS", &["_p3.cgns", "bc.cgns", "offset.cgns", "hexa27.cgns"], few),
     ] {
         if only.as_ref().is_some_and(|only| only != name) {

@@ -8,6 +8,7 @@ use sagitta::formats::{self, Error, WriteOptions, solver};
 use sagitta::mesh::elevate::elevate;
 use sagitta::mesh::{EntityKey, Mesh, NodeId, Parts, PhysicalName};
 
+use crate::common::measure::measure;
 use crate::common::{fixture, sagitta};
 
 fn sample(name: &str) -> Mesh {
@@ -197,6 +198,33 @@ fn nodes_of_other_points_are_brought_to_even_ones() {
     assert!(mesh.points_of(side.nodes).all(|x| x.z.abs() < 0.11), "the side z = 0");
 }
 
+/// What MFEM says of meshes that it wrote itself (`tests/consumers/mfem_samples.py`).
+#[test]
+fn mfems_own_meshes_have_mfems_measures() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/samples");
+    let text = std::fs::read_to_string(folder.join("mfem_figures.json")).unwrap();
+    let figures: BTreeMap<String, serde_json::Value> = serde_json::from_str(&text).unwrap();
+    assert!(figures.len() >= 5);
+    for (name, theirs) in figures {
+        let mesh = sample(&name);
+        let close = |a: f64, b: &serde_json::Value| (a - b.as_f64().unwrap()).abs() < 1e-9;
+        let (volume, areas) = measure(&mesh);
+        assert_eq!(mesh.cells().len() as u64, theirs["cells"].as_u64().unwrap(), "{name}");
+        if mesh.is_volume() {
+            assert!(close(volume, &theirs["volume"]), "{name}: {volume} {theirs}");
+            assert_eq!(areas.len(), theirs["sides"].as_object().unwrap().len(), "{name}");
+            assert!(
+                areas.iter().all(|(key, area)| close(*area, &theirs["sides"][key.tag.to_string()])),
+                "{name}: {areas:?}"
+            );
+        } else {
+            assert!(close(areas.values().sum(), &theirs["volume"]), "{name}: {areas:?} {theirs}");
+            let names: BTreeSet<&str> = mesh.physical_names().iter().map(|own| &own.name[..]).collect();
+            assert_eq!(names, BTreeSet::from(["inflow", "upper and lower"]));
+        }
+    }
+}
+
 #[test]
 fn mfem_meshes_that_cannot_be_read_are_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -215,6 +243,7 @@ fn mfem_meshes_that_cannot_be_read_are_refused() {
         (head.replace("0 1 2 3", "0 1 2 7") + points, "node 7"),
         (head.replace("dimension\n3", "dimension\n1") + points, "dimension 1"),
         (head.to_owned() + "nodes\n", "cut off"),
+        (head.replace("1 4 0 1 2 3", "1 4 0 1 2 2") + &space("H1_3D_P1"), "at two corners"),
         (head.to_owned() + &space("H1Pos_3D_P2"), "H1Pos_3D_P2"),
         (head.to_owned() + &space("H1_3D_P9"), "H1_3D_P9"),
         (head.to_owned() + &space("H1_3D_P2"), "do not fit"),

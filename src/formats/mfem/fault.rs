@@ -21,6 +21,8 @@ pub(super) enum MfemFault {
     VectorDimension(usize),
     #[error("the ordering of the nodes is {0}, not 0 or 1")]
     Ordering(i64),
+    #[error("an element has vertex {0} at two corners: remove the element, or write it as one with fewer corners")]
+    Collapsed(usize),
     #[error("boundary element {0} is no side of any element: its nodes are not known")]
     Stray(u64),
 }

@@ -189,6 +189,10 @@ impl<R: BufRead> File<R> {
             return Ok(assembly);
         }
         let (space, axes, by_point) = self.space(&cells)?;
+        let twice = cells.iter().chain(sides.iter()).find_map(|(_, _, corners)| repeated(corners));
+        if let Some(vertex) = twice {
+            return Err(self.scanner.flaw(MfemFault::Collapsed(vertex)));
+        }
         let vertices = elements::compress(vertices, &mut cells, &mut sides);
         let layout = Layout::new(space, vertices, &cells);
         let values = self.values(layout.count(), axes, by_point)?;
@@ -271,6 +275,12 @@ impl<R: BufRead> File<R> {
         }
         Ok(points)
     }
+}
+
+/// A vertex that stands twice among an element's.
+fn repeated(corners: &[NodeId]) -> Option<usize> {
+    let twice = |(n, corner): (usize, &NodeId)| corners[..n].contains(corner).then(|| corner.index());
+    corners.iter().enumerate().find_map(twice)
 }
 
 /// A name as C++'s `std::quoted` writes it, or a word; and what follows.

@@ -143,8 +143,8 @@ fn nodes(out: &mut impl Write, mesh: &Mesh, corners: &Corners) -> Result<(), Unw
             }
         }
     }
-    nodes.into_iter().flatten().try_for_each(|node| point(out, mesh, node))?;
-    Ok(())
+    let missing = || Unwritten::Inexpressible("an element has a node at two corners; remove it".to_owned());
+    nodes.into_iter().try_for_each(|node| Ok(point(out, mesh, node.ok_or_else(missing)?)?))
 }
 
 fn apart(cell: &Element) -> Unwritten {
