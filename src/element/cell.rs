@@ -219,6 +219,12 @@ impl Cell {
     pub const ALL: [Cell; 8] =
         [Cell::Point, Cell::Line, Cell::Triangle, Cell::Quad, Cell::Tet, Cell::Pyramid, Cell::Prism, Cell::Hex];
 
+    /// The cells that fill a part of a plane.
+    pub const FLAT: [Cell; 2] = [Cell::Triangle, Cell::Quad];
+
+    /// The cells of meshes that can be curved.
+    pub const CURVABLE: [Cell; 6] = [Cell::Triangle, Cell::Quad, Cell::Tet, Cell::Pyramid, Cell::Prism, Cell::Hex];
+
     /// The cells that fill a volume.
     pub const VOLUME: [Cell; 4] = [Cell::Tet, Cell::Pyramid, Cell::Prism, Cell::Hex];
 
@@ -245,6 +251,12 @@ impl Cell {
     #[must_use]
     pub fn dimension(self) -> usize {
         self.definition().dimension
+    }
+
+    /// Whether it is a cell of plane meshes: a triangle or quadrilateral.
+    #[must_use]
+    pub fn is_flat(self) -> bool {
+        self.dimension() == 2
     }
 
     /// Whether its map has a Jacobian determinant: a volume's has, a face's with a normal.

@@ -1,19 +1,24 @@
-//! The linear sub-elements of a high-order element, as corner tetrahedra of four lattice nodes.
+//! The linear sub-elements of a high-order element, as corner simplices of lattice nodes: tetrahedra, of plane cells triangles.
 //!
 //! A tet of order p falls into `p^3` linear tets, of which the octahedra inside can be cut along any of three
 //! diagonals: in a viscous layer the one that touches the layer-normal edge is always wrong
 //! (`docs/theory.md`, section 2), so all three cuts are offered and the caller takes, per element, the one whose worst
 //! sub-tet is best. Hexes, prisms and pyramids give a tetrahedron at each corner of each linear sub-element (the
 //! pyramids' at the four corners of the base: an apex has no corner tetrahedron).
+//!
+//! A triangle falls into `p^2` triangles, in one way only; a quadrilateral gives a triangle at each corner of each of its `p^2`. A corner
+//! triangle is written as a tetrahedron that ends at its first node.
 
 use super::cell::lattice_points;
 use super::{Cell, Order, Tables, lattice};
 
-/// Corner tetrahedra (local nodes) of an element's sub-elements; one list per way to cut the element.
+/// Corner simplices (local nodes) of an element's sub-elements; one list per way to cut the element.
 #[must_use]
-pub fn corner_tets(cell: Cell, order: Order) -> &'static [Vec<[u8; 4]>] {
+pub fn corner_simplices(cell: Cell, order: Order) -> &'static [Vec<[u8; 4]>] {
     static TABLES: Tables<Cuts> = Tables::new();
     TABLES.get(cell, order, || match cell {
+        Cell::Triangle => vec![subcells(cell, order, &TRIANGLE_ENDS)],
+        Cell::Quad => vec![subcells(cell, order, &QUAD_CORNERS)],
         Cell::Tet => (0..3).map(|diagonal| tet(order, diagonal)).collect(),
         Cell::Pyramid => vec![subcells(cell, order, &PYRAMID_CORNERS)],
         Cell::Prism => vec![prism(order)],
@@ -22,11 +27,22 @@ pub fn corner_tets(cell: Cell, order: Order) -> &'static [Vec<[u8; 4]>] {
     })
 }
 
-/// The lists of corner tetrahedra of one cell, one a way to cut it.
+/// The lists of corner simplices of one cell, one a way to cut it.
 type Cuts = Vec<Vec<[u8; 4]>>;
 
-/// Offsets of a corner tetrahedron from the lattice point of its sub-element.
+/// Offsets of a corner simplex from the lattice point of its sub-element.
 type Offsets = [[usize; 3]; 4];
+
+/// Upright and inverted sub-triangles.
+const TRIANGLE_ENDS: [Offsets; 2] =
+    [[[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 0]], [[1, 1, 0], [0, 1, 0], [1, 0, 0], [1, 1, 0]]];
+
+const QUAD_CORNERS: [Offsets; 4] = [
+    [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 0]],
+    [[1, 0, 0], [1, 1, 0], [0, 0, 0], [1, 0, 0]],
+    [[1, 1, 0], [0, 1, 0], [1, 0, 0], [1, 1, 0]],
+    [[0, 1, 0], [0, 0, 0], [1, 1, 0], [0, 1, 0]],
+];
 
 /// Upright and inverted sub-tets.
 const TET_ENDS: [Offsets; 2] =
@@ -85,13 +101,13 @@ fn prism(order: Order) -> Vec<[u8; 4]> {
 fn subcells(cell: Cell, order: Order, offsets: &[Offsets]) -> Vec<[u8; 4]> {
     let whole = match cell {
         Cell::Hex => 8,
-        Cell::Pyramid => 4,
+        Cell::Quad | Cell::Pyramid => 4,
         _ => 1,
     };
     whole_subcells(cell, order, offsets, whole)
 }
 
-/// The corner tets at every lattice point, taken in runs of `whole`: a run counts where all its nodes exist.
+/// The corner simplices at every lattice point, taken in runs of `whole`: a run counts where all its nodes exist.
 fn whole_subcells(cell: Cell, order: Order, offsets: &[Offsets], whole: usize) -> Vec<[u8; 4]> {
     let nodes = lattice(cell, order);
     let find = |at: [usize; 3]| nodes.iter().position(|n| n.map(usize::from) == at).map(|n| n as u8);
@@ -124,7 +140,7 @@ mod tests {
     #[test]
     fn the_sub_tets_of_a_tet_fill_it_whatever_the_cut() {
         for order in Order::all() {
-            for cut in corner_tets(Cell::Tet, order) {
+            for cut in corner_simplices(Cell::Tet, order) {
                 assert_eq!(cut.len(), order.get().pow(3));
                 let sum: f64 = cut.iter().map(|&t| volume(Cell::Tet, order, t)).sum();
                 assert!((sum - 1.0 / 6.0).abs() < 1e-14, "{order}: {sum}");
@@ -133,15 +149,30 @@ mod tests {
     }
 
     #[test]
+    fn plane_cells_have_their_triangles_all_turning_one_way() {
+        for order in Order::all() {
+            let p = order.get();
+            for (cell, count) in [(Cell::Triangle, p * p), (Cell::Quad, 4 * p * p)] {
+                let corners = &corner_simplices(cell, order)[0];
+                let nodes = lattice(cell, order);
+                let at = |n: u8| glam::DVec3::from(nodes[usize::from(n)].map(f64::from));
+                let turn = |&[o, a, b, end]: &[u8; 4]| ((at(a) - at(o)).cross(at(b) - at(o)).z, end == o);
+                assert!(corners.iter().map(turn).all(|own| own == (1.0, true)), "{cell} {order}");
+                assert_eq!(corners.len(), count);
+            }
+        }
+    }
+
+    #[test]
     fn other_cells_have_a_tet_at_each_corner_of_each_sub_element() {
         for order in Order::all() {
             let p = order.get();
-            let count = |cell: Cell| corner_tets(cell, order)[0].len();
+            let count = |cell: Cell| corner_simplices(cell, order)[0].len();
             assert_eq!(count(Cell::Hex), 8 * p.pow(3));
             assert_eq!(count(Cell::Prism), 6 * p.pow(3));
             assert_eq!(count(Cell::Pyramid), 4 * (1..=p).map(|m| m * m).sum::<usize>());
             for cell in [Cell::Hex, Cell::Prism, Cell::Pyramid] {
-                assert!(corner_tets(cell, order)[0].iter().all(|&t| volume(cell, order, t) > 1e-6), "{cell}");
+                assert!(corner_simplices(cell, order)[0].iter().all(|&t| volume(cell, order, t) > 1e-6), "{cell}");
             }
         }
     }

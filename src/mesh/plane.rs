@@ -49,6 +49,12 @@ impl Plane {
     }
 }
 
+/// A unit vector; exactly that of an axis where it lies along it.
+fn exact(normal: DVec3) -> DVec3 {
+    let along = |axis: DVec3| normal * axis == normal;
+    [DVec3::X, DVec3::Y, DVec3::Z].into_iter().find(|&axis| along(axis)).map_or(normal, |axis| axis.copysign(normal))
+}
+
 impl Mesh {
     /// The plane of a mesh whose cells are faces, with its nodes at `positions`: its normal is the one against which most cells are
     /// positive, by their corners, and along its largest component where as many are negative.
@@ -64,6 +70,7 @@ impl Mesh {
         cells.blocks().iter().flat_map(|block| &block.nodes).for_each(|n| used[n.index()] = true);
         let points: Vec<DVec3> = positions.iter().zip(used).filter(|(_, used)| *used).map(|(x, _)| *x).collect();
         let plane = Plane::through(&points, FLAT * Aabb::of_points(points.iter().copied()).diagonal())?;
+        let plane = Plane { normal: exact(plane.normal), ..plane };
         let plane = if plane.is_along_axis() { plane } else { plane.turned() };
         let areas = cells.iter().map(|cell| {
             let at = |n: usize| positions[cell.nodes[n].index()];

@@ -11,5 +11,5 @@ mod size;
 pub use cost::{alpha, blend, nodal};
 pub use grid_lines::{GridLineAngles, GridLines};
 pub use shape::{Cut, c_wcn, c_wcn_slope, corner_frame, element_c_wcn};
-pub(crate) use shape::{cofactor, squared};
+pub(crate) use shape::{Norms, cofactor, norms, squared};
 pub use size::{element_c_jac, jacobians};

@@ -10,14 +10,14 @@
 //! that the result does not depend on their order or on the number of threads. Nodes on walls keep their springs
 //! ([`super::Anchor`]), as with the other engine; nodes of periodic patches, of which the paper has none, are held.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use rayon::prelude::*;
 
-use super::kernel::{Element, Kernel};
+use super::kernel::{Element, Kernel, hats};
 use super::objective::{Gathered, Objective};
 use super::survey::Scratch;
 use super::{Constraint, Freedom};
-use crate::element::corner_tets;
+use crate::element::corner_simplices;
 use crate::quality::{c_wcn_slope, corner_frame, nodal};
 
 /// Longest step, as a fraction of the inscribed radius. Of 0.02, 0.05, 0.1, 0.25 and 0.5 the best on wing_sharp at scale 0.4, P2,
@@ -136,7 +136,7 @@ fn costs(objective: &Objective, x: &[DVec3]) -> Vec<(f64, DVec3)> {
             }
         }
         let [(wcn, wcn_slope), (jac, jac_slope)] = around.map(|share| share.cost());
-        (shape * wcn + size * jac, wcn_slope * shape + jac_slope * size)
+        (shape * wcn + size * jac, patch.view.back(wcn_slope * shape + jac_slope * size))
     };
     let mut costs: Vec<_> = (0..patch.nodes.len()).into_par_iter().with_min_len(256).map(cost).collect();
     for &(node, anchor) in &objective.anchors {
@@ -149,10 +149,10 @@ fn costs(objective: &Objective, x: &[DVec3]) -> Vec<(f64, DVec3)> {
 
 /// Adds an element's sub-elements and survey points to the shares of its nodes.
 fn shares(kernel: &Kernel, element: &Element, jacobian: bool, scratch: &mut Scratch, nodes: &mut [[Share; 2]]) {
-    for &tet in &corner_tets(kernel.cell, kernel.order)[usize::from(element.cut)] {
-        let w = corner_frame(tet, element.targets).inverse();
-        let (value, stress) = c_wcn_slope(corner_frame(tet, element.points) * w);
-        for (&node, hat) in tet.iter().zip(hats(w)) {
+    for &simplex in &corner_simplices(kernel.cell, kernel.order)[usize::from(element.cut)] {
+        let w = corner_frame(simplex, element.targets).inverse();
+        let (value, stress) = c_wcn_slope(corner_frame(simplex, element.points) * w, kernel.cell.is_flat());
+        for (node, hat) in hats(simplex, w) {
             nodes[usize::from(node)][0].add(value, stress * hat);
         }
     }
@@ -162,12 +162,6 @@ fn shares(kernel: &Kernel, element: &Element, jacobian: bool, scratch: &mut Scra
             nodes[node][1].add(value, slope);
         });
     }
-}
-
-/// Gradients of a sub-element's four hat functions in its target, `w` being the inverse of the target's frame.
-fn hats(w: DMat3) -> [DVec3; 4] {
-    let rows = w.transpose();
-    [-(rows.x_axis + rows.y_axis + rows.z_axis), rows.x_axis, rows.y_axis, rows.z_axis]
 }
 
 /// Movable nodes that are below the threshold or share an element with one that is.
@@ -188,19 +182,24 @@ fn active(objective: &Objective, costs: &[(f64, DVec3)], threshold: f64) -> Vec<
     active
 }
 
-/// For every node the smallest inscribed radius of the unperturbed sub-elements at it: 3 volume / surface.
+/// For every node the smallest inscribed radius of the unperturbed sub-elements at it: 3 volume / surface; of a triangle's as well, 2 area /
+/// rim.
 fn radii(objective: &Objective) -> Vec<f64> {
     let patch = objective.patch;
     let mut radii = vec![f64::INFINITY; patch.nodes.len()];
     for (run, kernel) in patch.runs.iter().zip(&objective.kernels) {
         let elements = patch.slots[run.slot..][..run.count * run.stride].chunks_exact(run.stride);
         for (nodes, &cut) in elements.zip(&objective.cuts[run.first..]) {
-            for tet in &corner_tets(kernel.cell, kernel.order)[usize::from(cut)] {
-                let corners = tet.map(|n| nodes[usize::from(n)] as usize);
+            for simplex in &corner_simplices(kernel.cell, kernel.order)[usize::from(cut)] {
+                let corners = simplex.map(|n| nodes[usize::from(n)] as usize);
                 let [o, a, b, c] = corners.map(|n| patch.targets[n]);
                 let (u, v, w) = (a - o, b - o, c - o);
-                let twice = [u.cross(v), v.cross(w), w.cross(u), (v - u).cross(w - u)].map(DVec3::length);
-                let radius = u.cross(v).dot(w).abs() / twice.iter().sum::<f64>();
+                let radius = if kernel.cell.is_flat() {
+                    u.cross(v).length() / [u, v, v - u].map(DVec3::length).iter().sum::<f64>()
+                } else {
+                    let twice = [u.cross(v), v.cross(w), w.cross(u), (v - u).cross(w - u)].map(DVec3::length);
+                    u.cross(v).dot(w).abs() / twice.iter().sum::<f64>()
+                };
                 corners.iter().for_each(|&n| radii[n] = radii[n].min(radius));
             }
         }
@@ -224,7 +223,7 @@ mod tests {
 
     #[test]
     fn slopes_of_nodal_costs_have_their_order() {
-        for cell in Cell::VOLUME {
+        for cell in Cell::CURVABLE {
             for order in Order::all().skip(1) {
                 let kernel = Kernel::new(cell, order, order.get());
                 let (mut points, targets) = bent(cell, order);

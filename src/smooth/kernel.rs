@@ -1,11 +1,11 @@
 //! One element's contribution to the objective, and to its gradient and Hessian blocks by each of its nodes.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::density::Density;
 use super::derivative::NodeDerivative;
 use super::survey::{Scratch, Survey};
-use crate::element::{Cell, Order, corner_tets};
+use crate::element::{Cell, Order, corner_simplices};
 use crate::quality::{Cut, corner_frame};
 
 /// Weights of the two components of equation (2), and how their samples count.
@@ -25,7 +25,7 @@ pub(super) struct Kernel {
     pub(super) survey: Survey,
 }
 
-/// An element as the kernel sees it: nodes relative to the first corner.
+/// An element as the kernel sees it: nodes relative to the first corner, those of plane cells in the plane of x and y.
 pub(super) struct Element<'a> {
     pub(super) points: &'a [DVec3],
     pub(super) targets: &'a [DVec3],
@@ -68,25 +68,24 @@ impl Kernel {
     }
 
     fn shape_value(&self, element: &Element, weights: &Weights) -> f64 {
-        let tets = &corner_tets(self.cell, self.order)[usize::from(element.cut)];
-        let share = |&tet: &[u8; 4]| {
-            let w = corner_frame(tet, element.targets).inverse();
-            weights.density.shape_value(corner_frame(tet, element.points) * w)
+        let simplices = &corner_simplices(self.cell, self.order)[usize::from(element.cut)];
+        let flat = self.cell.is_flat();
+        let share = |&simplex: &[u8; 4]| {
+            let w = corner_frame(simplex, element.targets).inverse();
+            weights.density.shape_value(corner_frame(simplex, element.points) * w, flat)
         };
-        weights.shape / tets.len() as f64 * tets.iter().map(share).sum::<f64>()
+        weights.shape / simplices.len() as f64 * simplices.iter().map(share).sum::<f64>()
     }
 
     fn shape_derivatives(&self, element: &Element, weights: &Weights, nodes: &mut [NodeDerivative]) -> f64 {
-        let tets = &corner_tets(self.cell, self.order)[usize::from(element.cut)];
-        let scale = weights.shape / tets.len() as f64;
+        let simplices = &corner_simplices(self.cell, self.order)[usize::from(element.cut)];
+        let (flat, scale) = (self.cell.is_flat(), weights.shape / simplices.len() as f64);
         let mut value = 0.0;
-        for &tet in tets {
-            let w = corner_frame(tet, element.targets).inverse();
-            let sample = weights.density.shape(corner_frame(tet, element.points) * w);
+        for &simplex in simplices {
+            let w = corner_frame(simplex, element.targets).inverse();
+            let sample = weights.density.shape(corner_frame(simplex, element.points) * w, flat);
             value += scale * sample.value;
-            let rows = w.transpose();
-            let hats = [-(rows.x_axis + rows.y_axis + rows.z_axis), rows.x_axis, rows.y_axis, rows.z_axis];
-            for (&node, g) in tet.iter().zip(hats) {
+            for (node, g) in hats(simplex, w) {
                 let node = &mut nodes[usize::from(node)];
                 node.gradient += sample.stress * g * scale;
                 node.hessian += sample.hessian(g) * scale;
@@ -96,6 +95,14 @@ impl Kernel {
     }
 }
 
+/// The nodes of a corner simplex with the gradients of their hat functions in its target, `w` being the inverse of the target's frame.
+pub(super) fn hats(simplex: [u8; 4], w: DMat3) -> impl Iterator<Item = (u8, DVec3)> {
+    let rows = w.transpose();
+    let flat = simplex[0] == simplex[3];
+    let first = if flat { rows.x_axis + rows.y_axis } else { rows.x_axis + rows.y_axis + rows.z_axis };
+    simplex.into_iter().zip([-first, rows.x_axis, rows.y_axis, rows.z_axis]).take(if flat { 3 } else { 4 })
+}
+
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
@@ -103,20 +110,21 @@ pub(super) mod tests {
 
     /// A curved element: the lattice bent by a smooth map and shrunk, so that no sample is near the cap at J = J_c.
     pub(in super::super) fn bent(cell: Cell, order: Order) -> (Vec<DVec3>, Vec<DVec3>) {
+        let flat = |x: DVec3| if cell.is_flat() { x.with_z(0.0) } else { x };
         let targets: Vec<DVec3> = lattice(cell, order)
             .iter()
             .map(|n| DVec3::from(n.map(|x| f64::from(x) / order.get() as f64)) * DVec3::new(1.0, 0.8, 0.3))
             .collect();
         let bend =
             |x: &DVec3| *x * 0.8 + DVec3::new(0.1 * x.y * x.x, -0.1 * x.z * x.x, 0.15 * x.x * x.x - 0.2 * x.z * x.y);
-        (targets.iter().map(bend).collect(), targets)
+        (targets.iter().map(bend).map(flat).collect(), targets)
     }
 
     #[test]
     fn gradients_and_hessians_have_their_order() {
         let mut scratch = Scratch::default();
         let weights = Weights { shape: 0.4, jacobian: 0.6, density: Density { emphasis: 5.0, delta: 0.0 } };
-        for cell in Cell::VOLUME {
+        for cell in Cell::CURVABLE {
             for order in Order::all().skip(1) {
                 let kernel = Kernel::new(cell, order, order.get());
                 let (points, targets) = bent(cell, order);
@@ -126,7 +134,7 @@ pub(super) mod tests {
                 let same = kernel.value(&element, &weights, &mut scratch);
                 assert!((value - same).abs() < 1e-12 * value, "{cell} {order}: {value} and {same}");
                 for moved in [0, points.len() / 2, points.len() - 1] {
-                    let d = DVec3::new(0.2, -0.15, 0.1);
+                    let d = DVec3::new(0.2, -0.15, if cell.is_flat() { 0.0 } else { 0.1 });
                     let mut remainder = |h: f64, with: f64| {
                         let mut points = points.clone();
                         points[moved] += d * h;
@@ -152,7 +160,7 @@ pub(super) mod tests {
     fn the_straight_element_costs_nothing() {
         let mut scratch = Scratch::default();
         let weights = Weights { shape: 0.5, jacobian: 0.5, density: Density { emphasis: 100.0, delta: 0.0 } };
-        for cell in Cell::VOLUME {
+        for cell in Cell::CURVABLE {
             let (_, targets) = bent(cell, Order::MAX);
             let kernel = Kernel::new(cell, Order::MAX, 8);
             let element = Element { points: &targets, targets: &targets, cut: 0 };

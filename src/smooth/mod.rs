@@ -18,6 +18,7 @@ mod settings;
 mod stages;
 mod summary;
 mod survey;
+mod view;
 mod watch;
 
 use glam::{DAffine3, DVec3};

@@ -52,6 +52,8 @@ impl Gathered {
         self.points.extend(nodes.iter().map(|&n| x[n as usize] - origin));
         self.targets.clear();
         self.targets.extend(nodes.iter().map(|&n| patch.targets[n as usize] - straight));
+        patch.view.turn(&mut self.points);
+        patch.view.turn(&mut self.targets);
         (Element { points: &self.points, targets: &self.targets, cut }, &mut self.scratch)
     }
 }
@@ -101,7 +103,7 @@ impl Objective<'_> {
                 total.gradient += slots[slot as usize].gradient;
                 total.hessian += slots[slot as usize].hessian;
             }
-            total
+            self.patch.view.derivative(total)
         };
         (0..self.patch.nodes.len()).into_par_iter().with_min_len(256).map(sum).collect_into_vec(nodes);
         for &(node, anchor) in &self.anchors {

@@ -2,6 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 
+use super::view::View;
 use super::{Image, Problem};
 use crate::element::Cell;
 use crate::mesh::{ElementId, Incidence, NodeId};
@@ -37,6 +38,8 @@ pub(super) struct Patch {
     incident: Incidence<u32>,
     /// Straight positions of the nodes.
     pub(super) targets: Vec<DVec3>,
+    /// Where the elements are looked at from.
+    pub(super) view: View,
 }
 
 impl Patch {
@@ -74,7 +77,7 @@ impl Patch {
         let periodic = periodic(images, local, &mut movable);
         nodes.iter().for_each(|node| local[node.index()] = u32::MAX);
         let targets = nodes.iter().map(|n| problem.straight[n.index()]).collect();
-        Patch { elements, runs, slots, nodes, movable, periodic, incident, targets }
+        Patch { elements, runs, slots, nodes, movable, periodic, incident, targets, view: problem.view }
     }
 
     /// Slots of a node's appearances in elements, rising.

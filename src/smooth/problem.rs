@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::kernel::{Element, Kernel};
 use super::survey::Scratch;
+use super::view::View;
 use crate::element::{Cell, Order};
 use crate::mesh::{ElementId, Elements, Mesh, NodeId};
 use crate::quality::{Cut, element_c_wcn};
@@ -17,6 +18,8 @@ pub struct Problem<'a> {
     pub(super) straight: &'a [DVec3],
     /// Number of cells around each node.
     valence: Vec<u32>,
+    /// Where its cells are looked at from.
+    pub(super) view: View,
 }
 
 /// The two components of an element's cost, equations (3) and (6): its worst sub-element and its worst survey point.
@@ -49,7 +52,7 @@ impl<'a> Problem<'a> {
         for node in cells.blocks().iter().flat_map(|block| &block.nodes) {
             valence[node.index()] += 1;
         }
-        Problem { order: mesh.order(), cells, straight, valence }
+        Problem { order: mesh.order(), cells, straight, valence, view: View::of(mesh, straight) }
     }
 
     pub(super) fn cells(&self) -> &Elements<'a> {
@@ -111,6 +114,8 @@ impl<'a> Problem<'a> {
             if points == targets {
                 return ElementCost { c_wcn: 1.0, mean_c_wcn: 1.0, c_jac: 1.0, cut: 0 };
             }
+            self.view.turn(points);
+            self.view.turn(targets);
             let (c_wcn, mean_c_wcn, cut) = element_c_wcn(self.cell(e), self.order, points, targets);
             let element = Element { points, targets, cut };
             let c_jac = kernels.of(self.cell(e)).c_jac(&element, scratch);

@@ -19,6 +19,8 @@ pub(super) struct Survey {
     padded: usize,
     nodes: usize,
     corners: usize,
+    /// The last entry of every frame, to begin with: a plane cell's slopes along its third axis are none, and it stands on the unit vector.
+    up: f64,
     curved: Vec<f64>,
     /// The linear element's gradients at the same points, for `J_c`; one block where they are the same at all points.
     linear: Vec<f64>,
@@ -52,7 +54,8 @@ impl Survey {
             linear.truncate(block);
         }
         let (count, padded) = (curved.count(), curved.padded());
-        Survey { arch: Arch::new(), count, padded, nodes, corners, curved: by_block(&curved, nodes), linear }
+        let up = if cell.is_flat() { 1.0 } else { 0.0 };
+        Survey { arch: Arch::new(), count, padded, nodes, corners, up, curved: by_block(&curved, nodes), linear }
     }
 
     /// Smallest `C_JAC` at the points, equation (6).
@@ -179,10 +182,10 @@ impl WithSimd for Look<'_> {
             jc[block] = if fixed && block > 0 {
                 jc[0]
             } else {
-                let frame = frame(simd, &linear[chunk * survey.corners * 3 * parts..], (parts, part), corners);
+                let frame = frame(simd, survey.up, &linear[chunk * survey.corners * 3 * parts..], (parts, part), corners);
                 determinant(simd, &frame, &cofactors_of(simd, &frame))
             };
-            let frame = frame(simd, &curved[chunk * survey.nodes * 3 * parts..], (parts, part), points);
+            let frame = frame(simd, survey.up, &curved[chunk * survey.nodes * 3 * parts..], (parts, part), points);
             let cofactor = cofactors_of(simd, &frame);
             ratio[block] = simd.div_f64s(determinant(simd, &frame, &cofactor), jc[block]);
             if cofactors {
@@ -194,10 +197,17 @@ impl WithSimd for Look<'_> {
     }
 }
 
-/// `frame[3 a + b] = sum_i x_i[a] dphi_i/dxi_b`.
+/// `frame[3 a + b] = sum_i x_i[a] dphi_i/dxi_b`, and `up` added to the last.
 #[inline(always)]
-fn frame<S: Simd>(simd: S, table: &[S::f64s], (parts, part): (usize, usize), points: &[DVec3]) -> [S::f64s; 9] {
+fn frame<S: Simd>(
+    simd: S,
+    up: f64,
+    table: &[S::f64s],
+    (parts, part): (usize, usize),
+    points: &[DVec3],
+) -> [S::f64s; 9] {
     let mut frame = [simd.splat_f64s(0.0); 9];
+    frame[8] = simd.splat_f64s(up);
     for (x, slopes) in points.iter().zip(table.chunks_exact(3 * parts)) {
         let slopes = [slopes[part], slopes[parts + part], slopes[2 * parts + part]];
         for (a, x) in [x.x, x.y, x.z].into_iter().enumerate() {
