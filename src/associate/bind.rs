@@ -6,6 +6,7 @@ use cad::{Aabb, EdgeId, EntityId, Evaluation, FaceId, Group, Kind, Model, Vertex
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
+use super::host::{hosts, is_host, kind_of};
 use super::sizes::check_boxes;
 use super::{AssociateError, Association, Candidate, Candidates, Classification, Curve, Surface, Teller};
 use crate::mesh::{Boundary, EntityKey, Mesh, NodeId, Plane};
@@ -104,8 +105,8 @@ impl Binder<'_> {
         let index = match self.known_surfaces.get(&entities) {
             Some(&index) => index,
             None => {
-                let ids: Vec<FaceId> = entities.iter().filter_map(|e| face_of(*e)).collect();
-                let group = Group::of_faces(self.model, &ids).map_err(|cause| self.bad_group(sheet, &cause))?;
+                let ids: Vec<EntityId> = entities.iter().copied().filter(|&e| is_host(self.boundary, e)).collect();
+                let group = Group::of(self.model, &ids).map_err(|cause| self.bad_group(sheet, &cause))?;
                 let plane = self.common_plane(&ids);
                 let label = format!("{} ({})", sheet.label, names(&entities));
                 self.result.surfaces.push(Surface { group, label, plane });
@@ -117,7 +118,7 @@ impl Binder<'_> {
             sheet.items.iter().flat_map(|&f| self.boundary.corners[f].iter().copied()).collect();
         let farthest = self.held(&self.result.surfaces[index].group, &sheet.label, &entities, &nodes)?;
         let off = farthest > ON_ENTITY * self.model.diagonal();
-        if let Some(other) = (off && !trusted).then(|| self.face_that_holds(&nodes)).flatten() {
+        if let Some(other) = (off && !trusted).then(|| self.host_that_holds(&nodes)).flatten() {
             let (label, entities) = (sheet.label.clone(), names(&entities));
             return Err(AssociateError::Elsewhere { label, entities, other: other.to_string(), teller: self.teller });
         }
@@ -126,14 +127,14 @@ impl Binder<'_> {
         Ok(index)
     }
 
-    /// The first CAD face that all the nodes lie on.
-    fn face_that_holds(&self, nodes: &BTreeSet<NodeId>) -> Option<FaceId> {
+    /// The first CAD face, in the plane edge, that all the nodes lie on.
+    fn host_that_holds(&self, nodes: &BTreeSet<NodeId>) -> Option<EntityId> {
         let on = |group: &Group, n: &NodeId| {
             group.distance(self.mesh.points()[n.index()]) <= ON_ENTITY * self.model.diagonal()
         };
         let holds =
-            |id: &FaceId| Group::of_faces(self.model, &[*id]).is_ok_and(|group| nodes.iter().all(|n| on(&group, n)));
-        self.model.faces().iter().map(|face| face.id).find(holds)
+            |id: &EntityId| Group::of(self.model, &[*id]).is_ok_and(|group| nodes.iter().all(|n| on(&group, n)));
+        hosts(self.boundary, self.model).into_iter().find(holds)
     }
 
     /// The largest distance of the nodes to a group.
@@ -171,17 +172,27 @@ impl Binder<'_> {
         AssociateError::Group { label, cause: cause.to_string() }
     }
 
-    /// The plane that all the faces lie in.
-    fn common_plane(&self, faces: &[FaceId]) -> Option<Plane> {
+    /// The plane of a plane face; of a straight edge that which stands on the mesh's plane.
+    fn plane(&self, entity: EntityId) -> Option<Plane> {
+        let flat = matches!(kind_of(self.model, entity)?, Kind::Plane | Kind::Line);
+        let middle = |[from, to]: [f64; 2]| 0.5 * (from + to);
+        let parameters = match entity {
+            EntityId::Face(id) => self.model.face(id)?.parameters.map(middle),
+            EntityId::Edge(id) => [middle(self.model.edge(id)?.parameters), 0.0],
+            EntityId::Vertex(_) => return None,
+        };
+        match (self.boundary.plane, self.model.evaluate(entity, parameters).filter(|_| flat)?) {
+            (None, Evaluation::Surface(at)) => Some(Plane { point: at.point, normal: at.normal? }),
+            (Some(plane), Evaluation::Curve(at)) => plane.upright(&[at.point, at.point + at.tangent?], self.slack),
+            _ => None,
+        }
+    }
+
+    /// The plane that all the faces or edges lie in.
+    fn common_plane(&self, entities: &[EntityId]) -> Option<Plane> {
         let mut common: Option<Plane> = None;
-        for &id in faces {
-            let face = self.model.face(id)?;
-            if face.kind != Kind::Plane {
-                return None;
-            }
-            let middle = face.parameters.map(|[from, to]| 0.5 * (from + to));
-            let Evaluation::Surface(at) = self.model.evaluate(id.into(), middle)? else { return None };
-            let own = Plane { point: at.point, normal: at.normal? };
+        for &id in entities {
+            let own = self.plane(id)?;
             match common {
                 None => common = Some(own),
                 Some(plane) => {
@@ -200,15 +211,23 @@ impl Binder<'_> {
         let nodes: BTreeSet<NodeId> = patch.iter().flat_map(|&f| self.boundary.corners[f].iter().copied()).collect();
         let places: Vec<DVec3> = nodes.iter().map(|n| self.mesh.points()[n.index()]).collect();
         let entity = self.boundary.faces[patch[0]].entity;
-        let what = format!("{entity}: {} faces are not associated with the CAD", patch.len());
-        let classification = match Plane::through(&places, self.slack) {
+        let flat = match self.boundary.plane {
+            None => Plane::through(&places, self.slack),
+            Some(plane) => plane.upright(&places, self.slack),
+        };
+        let [noun, shape, are] = match self.boundary.plane {
+            None => ["faces", "plane", "planar"],
+            Some(_) => ["edges", "line", "straight"],
+        };
+        let what = format!("{entity}: {} {noun} are not associated with the CAD", patch.len());
+        let classification = match flat {
             Some(plane) => {
-                self.result.notes.push(format!("{what}; they stay in their plane"));
+                self.result.notes.push(format!("{what}; they stay in their {shape}"));
                 self.result.planes.push(plane);
                 Classification::Plane(self.result.planes.len() - 1)
             }
             None => {
-                self.result.notes.push(format!("{what} and are not planar; they stay straight"));
+                self.result.notes.push(format!("{what} and are not {are}; they stay straight"));
                 Classification::Straight
             }
         };
@@ -365,11 +384,24 @@ impl Binder<'_> {
     fn lowest(&self, around: &BTreeSet<Rank>, x: DVec3) -> Classification {
         let curves: Vec<usize> =
             around.iter().filter_map(|r| if let Rank::Curve(c) = r { Some(*c) } else { None }).collect();
+        if self.boundary.plane.is_some() {
+            return self.lowest_in_plane(around, x);
+        }
         match curves[..] {
             [] => around.first().map_or(Classification::Free, |rank| rank.classification()),
             [only] if self.result.curves[only].group.entities().len() == 1 => Classification::Curve(only),
             [first, ..] => self.vertex(x).map_or(Classification::Curve(first), Classification::Vertex),
         }
+    }
+
+    /// The same in a plane mesh: where sides on different edges meet, or on several that go together, there is a vertex.
+    fn lowest_in_plane(&self, around: &BTreeSet<Rank>, x: DVec3) -> Classification {
+        let lowest = around.first().map_or(Classification::Free, |rank| rank.classification());
+        let one = match lowest {
+            Classification::Surface(surface) => self.result.surfaces[surface].group.entities().len() == 1,
+            _ => true,
+        };
+        if around.len() < 2 && one { lowest } else { self.vertex(x).map_or(lowest, Classification::Vertex) }
     }
 
     /// The CAD vertex at a place: where curves meet, or the edges of one curve do, perhaps at an angle.

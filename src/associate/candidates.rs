@@ -61,7 +61,7 @@ impl Candidates {
         let points = mesh.elements_of(Cell::Point);
         let nodes = points.iter().map(|point| (point.entity, point.nodes[0]));
         candidates.points = gather(nodes, |tag| VertexId::from_tag(tag).filter(|&id| model.vertex(id).is_some()));
-        candidates
+        candidates.of_sides(boundary)
     }
 
     /// Boundary faces that are said to lie on CAD faces.

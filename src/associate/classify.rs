@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use cad::{Aabb, EntityId, Kind, Model};
 use rustc_hash::FxHashSet;
 
+use super::host::{is_host, kind_of};
 use super::side::SMOOTH;
 use super::witnesses::{combined, completed};
 use super::{
@@ -227,9 +228,9 @@ impl Classifier<'_> {
     /// Whether faces were found on CAD of a shape that no scaled or shifted copy of it has in common with it.
     fn has_own_shape(&self, candidates: &Candidates) -> bool {
         let is_own = |entity: &EntityId| {
-            let EntityId::Face(id) = *entity else { return false };
-            let kind = self.model.face(id).map(|face| face.kind);
-            kind.is_some_and(|kind| !matches!(kind, Kind::Plane | Kind::Cone | Kind::Cylinder | Kind::Extrusion))
+            let kind = kind_of(self.model, *entity).filter(|_| is_host(self.boundary, *entity));
+            let common = |kind| matches!(kind, Kind::Plane | Kind::Cone | Kind::Cylinder | Kind::Extrusion | Kind::Line);
+            kind.is_some_and(|kind| !common(kind))
         };
         let own = candidates.sheets.iter().filter(|sheet| sheet.entities.iter().any(is_own));
         own.map(|sheet| sheet.items.len()).sum::<usize>() >= OWN_SHAPE

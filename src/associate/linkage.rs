@@ -142,7 +142,7 @@ pub fn linked(linkage: &Linkage, mesh: &Mesh, boundary: &Boundary, model: &Model
         let place = || reader.place(pair.linkage.origin);
         candidates.periodic.extend(records.map_err(|cause| LinkageError::Periodic { place: place(), cause })?);
     }
-    Ok(candidates)
+    Ok(candidates.of_sides(boundary))
 }
 
 /// The models of a mesh file, as far as the document names that file.
@@ -195,7 +195,9 @@ impl Reader<'_> {
 
     fn model(&self, links: &ModelLinks, candidates: &mut Candidates) -> Result<(), LinkageError> {
         self.named(links, candidates)?;
-        for sheet in &links.sheets {
+        // The cells of a plane mesh lie on one face or none: nothing depends on it.
+        let sheets = if self.boundary.plane.is_some() { &[][..] } else { &links.sheets[..] };
+        for sheet in sheets {
             for run in &sheet.faces {
                 let label = format!("sheet {:?}", sheet.name().unwrap_or(""));
                 let place = self.place(run.run.origin);

@@ -17,6 +17,7 @@ mod choice;
 mod classify;
 mod document;
 mod error;
+mod host;
 mod infer;
 mod joint;
 mod linkage;
@@ -42,6 +43,7 @@ pub use choice::{Choice, UnknownPatch};
 pub use classify::{Classified, ClassifyError, Sources, classify};
 pub use document::{TooLarge, Written, document};
 pub use error::AssociateError;
+pub use host::normal_of;
 pub use infer::{Doubt, Incidence, Inference, ON_CAD, Tolerance, infer};
 pub use joint::{Joints, SHARP, normal_at};
 pub use linkage::{Linkage, LinkageError, linked, models_of, own_geometry, same_file};
@@ -54,14 +56,14 @@ pub use side::{Side, sides};
 pub use sizes::check_boxes;
 pub use summary::{Patch, SUMMARY_SCHEMA, SpotReport, Summary, Undecided, summary};
 
-/// A set of CAD faces that mesh faces lie on.
+/// A set of CAD faces that mesh faces lie on; of CAD edges that the sides of a plane mesh lie on.
 #[derive(Debug)]
 pub struct Surface {
     /// The set, ready for closest points.
     pub group: Group,
     /// What the user calls it: sheet name or entity, and its CAD references.
     pub label: String,
-    /// The plane of the faces, where they are planes and lie in one.
+    /// The plane of the faces, where they are planes and lie in one; of straight edges in one line that which stands on the mesh's plane.
     pub plane: Option<Plane>,
 }
 
@@ -95,7 +97,7 @@ pub enum Classification {
 /// The mesh associated with the CAD.
 #[derive(Debug, Default)]
 pub struct Association {
-    /// CAD faces with mesh faces on them.
+    /// CAD faces with mesh faces on them; in a plane mesh CAD edges with sides on them.
     pub surfaces: Vec<Surface>,
     /// CAD edges with mesh edges on them.
     pub curves: Vec<Curve>,

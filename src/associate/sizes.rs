@@ -1,7 +1,8 @@
 //! Do mesh and CAD fit: their boxes, and planes of patches without CAD.
 
-use cad::{Aabb, EntityId, Model};
+use cad::{Aabb, Model};
 
+use super::host::bounds_of;
 use super::{AssociateError, Candidates};
 use crate::mesh::{Boundary, Mesh};
 
@@ -18,10 +19,8 @@ pub fn check_boxes(
     let linked = || candidates.sheets.iter().filter(|s| !s.entities.is_empty());
     let corners = linked().flat_map(|s| s.items.iter()).flat_map(|&f| boundary.corners[f].iter());
     let own = Aabb::of_points(corners.map(|n| mesh.points()[n.index()]));
-    let entities = linked()
-        .flat_map(|s| s.entities.iter())
-        .filter_map(|e| model.face(if let EntityId::Face(id) = e { *id } else { return None }));
-    let theirs = entities.fold(Aabb::EMPTY, |all, face| all.union(face.bounds));
+    let entities = linked().flat_map(|s| s.entities.iter()).filter_map(|&e| bounds_of(model, e));
+    let theirs = entities.fold(Aabb::EMPTY, Aabb::union);
     let (size, cad) = (own.diagonal(), theirs.diagonal());
     let ratio = size / cad;
     if !(1.0 / SAME_SIZE..=SAME_SIZE).contains(&ratio) {

@@ -7,6 +7,7 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::host::is_host;
 use super::{Candidates, Doubt, Inference};
 use crate::mesh::{Boundary, EntityKey, Mesh, NodeId};
 
@@ -136,7 +137,8 @@ pub fn summary(
             patch.off_cad += 1;
         } else {
             patch.undecided += 1;
-            undecided.push(Undecided::new("face", mesh, &boundary.corners[*face], doubt));
+            let kind = if boundary.plane.is_some() { "edge" } else { "face" };
+            undecided.push(Undecided::new(kind, mesh, &boundary.corners[*face], doubt));
         }
     }
     for (edge, doubt) in inference.iter().flat_map(|inference| &inference.edges) {
@@ -163,9 +165,8 @@ fn farthest_by_patch(
     faces: &[usize],
 ) -> BTreeMap<EntityKey, f64> {
     let mut farthest = BTreeMap::new();
-    let ids: Vec<cad::FaceId> =
-        entities.iter().filter_map(|e| if let EntityId::Face(id) = e { Some(*id) } else { None }).collect();
-    let Ok(group) = Group::of_faces(model, &ids) else { return farthest };
+    let ids: Vec<EntityId> = entities.iter().copied().filter(|&e| is_host(boundary, e)).collect();
+    let Ok(group) = Group::of(model, &ids) else { return farthest };
     let mut nodes: BTreeMap<EntityKey, BTreeSet<NodeId>> = BTreeMap::new();
     for &face in faces {
         nodes.entry(boundary.faces[face].entity).or_default().extend(&boundary.corners[face]);

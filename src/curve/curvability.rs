@@ -1,7 +1,7 @@
 //! Where the CAD leaves the elements of a linear mesh no room, known before anything is smoothed.
 //!
-//! * At a corner of a wall face, `q = (T_1 x T_2) . n / |c_1 x c_2|`; at a corner of an element whose three edges all lie on walls,
-//!   `q = det [T_1, T_2, T_3] / det [c_1, c_2, c_3]`: `T` the tangents of the edge polynomials at the corner as projected, `c` the chords, `n` the
+//! * At a corner of a wall face, `q = (T_1 x T_2) . n / |c_1 x c_2|`; at a corner of an element whose three edges (of a plane one: two) all
+//!   lie on walls, `q = det [T_1, T_2, T_3] / det [c_1, c_2, c_3]`: `T` the tangents of the edge polynomials at the corner as projected, `c` the chords, `n` the
 //!   CAD's normal. Where `q <= 0` the element is invalid whatever the nodes inside the volume do, as long as the wall's nodes stay where they
 //!   were projected to; only wall nodes that slide, or leave the CAD, can mend it.
 //! * `h / R`, an edge's length over the CAD's least radius of curvature at the corner: beyond 1, one polynomial does not follow the CAD.
@@ -171,22 +171,33 @@ impl Survey<'_, '_> {
         let on_wall = |node: NodeId| self.is_held(node);
         let mut spots = Vec::new();
         for own in self.level.mesh().cells().iter() {
-            if own.corners().iter().filter(|&&node| on_wall(node)).count() <= 3 {
+            let dimension = own.cell.dimension();
+            if own.corners().iter().filter(|&&node| on_wall(node)).count() <= dimension {
                 continue; // three edges on walls have four ends there
             }
             for corner in 0..own.cell.corner_count() {
                 let arms: Vec<Vec<usize>> = self.arms.at(own.cell, corner).collect();
-                let [a, b, c] = &arms[..] else { continue };
+                if arms.len() != dimension {
+                    continue;
+                }
                 if !arms.iter().all(|arm| arm.iter().all(|&place| on_wall(own.nodes[place]))) {
                     continue;
                 }
-                let edges = [a, b, c];
-                let flat = DMat3::from_cols_array_2d(&edges.map(|arm| chord(arm, own.nodes, &at).to_array()));
-                let bent = edges.map(|arm| self.arms.tangent(arm, own.nodes, &at).to_array());
-                let q = DMat3::from_cols_array_2d(&bent).determinant() / flat.determinant();
+                let up = self.level.plane().map(|plane| plane.normal);
+                let edges = |of: &dyn Fn(&Vec<usize>) -> DVec3| {
+                    let mut columns = arms.iter().map(of).chain(up);
+                    DMat3::from_cols(
+                        columns.next().unwrap_or_default(),
+                        columns.next().unwrap_or_default(),
+                        columns.next().unwrap_or_default(),
+                    )
+                };
+                let flat = edges(&|arm| chord(arm, own.nodes, &at));
+                let bent = edges(&|arm| self.arms.tangent(arm, own.nodes, &at));
+                let q = bent.determinant() / flat.determinant();
                 if q < LITTLE_ROOM {
                     let node = own.nodes[corner];
-                    let inner = self.level.wall.classification(own.nodes[a[2]].index());
+                    let inner = self.level.wall.classification(own.nodes[arms[0][2]].index());
                     let group = self.level.case.association.group_of(inner);
                     let bend = group.map_or(0.0, |group| self.bend(group, own.nodes, &arms));
                     spots.push(Spot::ElementCorner { element: own.id, node, q, bend });

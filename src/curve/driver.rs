@@ -77,7 +77,7 @@ pub fn curve(
     let mut clock = Clock::new(observer);
     clock.step(Step::Read);
     let mesh = input::checked(mesh)?;
-    input::check_cad(cad)?;
+    input::check_cad(&mesh, cad)?;
     clock.step(Step::Associate);
     let associated = Associated::new(&mesh, cad, linkage, settings)?;
     drive(mesh, associated, settings, clock)

@@ -27,8 +27,10 @@ pub enum Error {
     #[error(transparent)]
     UnknownPatch(#[from] UnknownPatch),
     /// Nothing to curve.
-    #[error("has no volume elements (tets, pyramids, prisms, hexes): nothing to curve")]
-    NoVolume,
+    #[error(
+        "has no volume elements (tets, pyramids, prisms, hexes), nor triangles or quadrilaterals that all lie in one plane: nothing to curve"
+    )]
+    NoCells,
     /// Nothing to curve onto.
     #[error("has no faces: nothing to curve onto")]
     NoFaces,

@@ -17,8 +17,8 @@ pub(super) fn checked(linear: Mesh) -> Result<Mesh, Error> {
     if linear.order() != Order::LINEAR {
         return Err(Error::NotLinear { order: linear.order() });
     }
-    if !linear.is_volume() {
-        return Err(Error::NoVolume);
+    if !linear.is_volume() && linear.plane(linear.points()).is_none() {
+        return Err(Error::NoCells);
     }
     let skin = Skin::of(&linear);
     if !skin.crossed.is_empty() {
@@ -40,9 +40,9 @@ fn listed(elements: &Elements, some: &[ElementId]) -> String {
     named.collect::<Vec<_>>().join(", ") + more
 }
 
-/// Refuses CAD that nothing can be curved onto.
-pub(super) fn check_cad(cad: &Model) -> Result<(), Error> {
-    if cad.faces().is_empty() { Err(Error::NoFaces) } else { Ok(()) }
+/// Refuses CAD that nothing of a mesh can be curved onto.
+pub(super) fn check_cad(mesh: &Mesh, cad: &Model) -> Result<(), Error> {
+    if mesh.is_volume() && cad.faces().is_empty() { Err(Error::NoFaces) } else { Ok(()) }
 }
 
 /// A mesh associated with its CAD.

@@ -61,7 +61,7 @@ impl Job {
         let (linear, cad) = (linear?, cad?);
 
         clock.step(Step::Associate);
-        let associate = |cad: &Model| Associated::new(&linear, cad, self.read_linkage()?.as_ref(), &self.settings);
+        let associate = |cad: &Model| self.associated(&linear, cad);
         let associated = self.scaled(cad, associate)?.0;
         drive(linear, associated, &self.settings, clock).map_err(|cause| self.error(cause))
     }
@@ -72,7 +72,7 @@ impl Job {
     /// [`JobError`].
     pub fn association(&self) -> Result<Summary, JobError> {
         let linear = self.read_mesh()?;
-        let associate = |cad: &Model| Associated::new(&linear, cad, self.read_linkage()?.as_ref(), &self.settings);
+        let associate = |cad: &Model| self.associated(&linear, cad);
         let (own, cad) = self.scaled(self.read_cad(self.cad_scale.unwrap_or(1.0))?, associate)?;
         let Classified { candidates, association, inference, source } = &own.classified;
         let mut summary = associate::summary(source, &linear, &own.boundary, &cad, candidates, inference.as_ref());
@@ -92,9 +92,12 @@ impl Job {
     }
 
     fn read_cad(&self, scale: f64) -> Result<Model, JobError> {
-        let model = Model::read(&self.cad, &ReadOptions { scale, ..self.reading.clone() })?;
-        check_cad(&model).map_err(|cause| self.error(cause))?;
-        Ok(model)
+        Ok(Model::read(&self.cad, &ReadOptions { scale, ..self.reading.clone() })?)
+    }
+
+    fn associated(&self, linear: &Mesh, cad: &Model) -> Result<Associated, Error> {
+        check_cad(linear, cad)?;
+        Associated::new(linear, cad, self.read_linkage()?.as_ref(), &self.settings)
     }
 
     fn read_linkage(&self) -> Result<Option<Linkage>, Error> {

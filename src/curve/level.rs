@@ -70,7 +70,13 @@ impl<'a> Level<'a> {
         self.straight()[node] + self.wall.displacement(node)
     }
 
-    /// The plane that holds a node, if one does.
+    /// The plane of a plane mesh.
+    #[must_use]
+    pub fn plane(&self) -> Option<Plane> {
+        self.case.boundary.plane
+    }
+
+    /// The plane that holds a node, if one does; in a plane mesh one that stands on it.
     #[must_use]
     pub fn plane_of(&self, node: usize) -> Option<Plane> {
         self.case.association.plane_of(self.wall.classification(node))

@@ -53,7 +53,7 @@ impl Proof {
 /// Judges those of the faces on the CAD that are `asked` for, by their index in [`Boundary::faces`](crate::mesh::Boundary::faces).
 pub(crate) fn walls(level: &Level, asked: impl Fn(usize) -> bool) -> Walls {
     let (Case { boundary, association, .. }, linear) = (level.case, level.linear());
-    let on_surface = |f: usize| matches!(association.faces[f], Classification::Surface(_));
+    let on_surface = |f: usize| matches!(association.faces[f], Classification::Surface(_)) && boundary.plane.is_none();
     let numbers: Vec<usize> = (0..boundary.faces.len()).filter(|&f| on_surface(f) && asked(f)).collect();
     let face = |f: usize| {
         let corners = boundary.corners[f].iter().map(|n| linear[n.index()]).collect();

@@ -1,14 +1,14 @@
-//! The faces and edges of a linear mesh that can lie on CAD.
+//! The faces and edges of a linear mesh that can lie on CAD; of a plane mesh the edges alone.
 
 use rustc_hash::FxHashMap;
 
-use super::{EntityKey, FaceKey, Mesh, NodeId};
+use super::{EntityKey, FaceKey, Mesh, NodeId, Plane};
 use crate::element::{Cell, Order};
 
-/// A two-dimensional element of the mesh file.
+/// A two-dimensional element of the mesh file; of a plane mesh a one-dimensional one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundaryFace {
-    /// Triangle or quadrilateral.
+    /// Triangle or quadrilateral; line.
     pub cell: Cell,
     /// Its block in the mesh, and its place there.
     pub block: usize,
@@ -18,7 +18,8 @@ pub struct BoundaryFace {
     pub entity: EntityKey,
 }
 
-/// The two-dimensional elements of a mesh, whatever its own dimension, and their edges.
+/// The two-dimensional elements of a mesh of volumes or on a curved surface, and their edges. In a plane mesh the lines that bound its
+/// cells are the faces, and each is its own edge.
 #[derive(Debug, Default)]
 pub struct Boundary {
     /// All of them, in file order.
@@ -27,6 +28,8 @@ pub struct Boundary {
     pub corners: Vec<Vec<NodeId>>,
     /// Every edge of a face once, smaller node first.
     pub edges: Vec<[NodeId; 2]>,
+    /// The plane of a plane mesh.
+    pub plane: Option<Plane>,
     /// The faces at each edge.
     pub edge_faces: Vec<Vec<usize>>,
     by_corners: FxHashMap<FaceKey, usize>,
@@ -37,8 +40,9 @@ impl Boundary {
     /// The boundary of a linear mesh.
     #[must_use]
     pub fn new(mesh: &Mesh) -> Boundary {
-        let mut boundary = Boundary::default();
-        for (place, block) in mesh.blocks_of(2) {
+        let mut boundary = Boundary { plane: mesh.plane(mesh.points()), ..Boundary::default() };
+        let dimension = if boundary.plane.is_some() { 1 } else { 2 };
+        for (place, block) in mesh.blocks_of(dimension) {
             for (element, corners) in block.elements(Order::LINEAR).enumerate() {
                 let face = BoundaryFace { cell: block.cell, block: place, element, entity: block.entity };
                 boundary.add(face, corners);

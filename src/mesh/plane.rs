@@ -31,6 +31,16 @@ impl Plane {
         points.iter().all(|&p| plane.closest(p).distance(p) <= slack).then_some(plane)
     }
 
+    /// The plane that stands upright on this one and holds points that lie on a line, within `slack`.
+    #[must_use]
+    pub fn upright(self, points: &[DVec3], slack: f64) -> Option<Plane> {
+        let &point = points.first()?;
+        let far = points.iter().copied().max_by(|a, b| a.distance(point).total_cmp(&b.distance(point)))?;
+        let normal = exact((far - point).cross(self.normal).try_normalize()?);
+        let upright = Plane { point, normal };
+        points.iter().all(|&x| upright.closest(x).distance(x) <= slack).then_some(upright)
+    }
+
     /// The point of the plane nearest to `x`.
     #[must_use]
     pub fn closest(&self, x: DVec3) -> DVec3 {

@@ -146,12 +146,17 @@ struct Foot {
 
 fn feet(mesh: &Mesh, x: &[DVec3]) -> Vec<Foot> {
     let mut sides = Vec::new();
+    let plane = mesh.plane(x);
     for side in mesh.sides().iter() {
         let corners = side.corners();
         for (n, &node) in corners.iter().enumerate() {
             let (next, last) = (corners[(n + 1) % corners.len()], corners[(n + corners.len() - 1) % corners.len()]);
             let [at, u, v] = [node, next, last].map(|n| x[n.index()]);
-            sides.push((node, next, last, (u - at).cross(v - at).normalize_or_zero()));
+            let normal = plane.map_or_else(
+                || (u - at).cross(v - at),
+                |plane| (u - at).cross(plane.normal) * if n == 0 { 1.0 } else { -1.0 },
+            );
+            sides.push((node, next, last, normal.normalize_or_zero()));
         }
     }
     sides.sort_by_key(|side| (side.0, side.1, side.2));

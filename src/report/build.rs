@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::certificate::CertificateReport;
 use super::curve::{
     Angles, CellReport, Costs, GridLinesReport, Input, LowerOrderReport, Nodes, OffCadReport, OpenFaceReport,
-    PatchReport, Projections, Report, SCHEMA, SmoothingReport, StepReport, WallFailure, WallReport, WallVerdict,
+    PatchReport, PlaneReport, Projections, Report, SCHEMA, SmoothingReport, StepReport, WallFailure, WallReport, WallVerdict,
 };
 use super::finite;
 use crate::associate::{Classification, OpenFace};
@@ -42,6 +42,7 @@ pub fn report(job: &Job, curved: &Curved) -> Report {
             cad_scale: curved.cad_scale,
         },
         order: mesh.order().into(),
+        plane: plane(curved),
         certified: curved.certificate.holds(),
         nodes: Nodes { linear: curved.linear_nodes, curved: mesh.points().len() },
         cells,
@@ -65,6 +66,20 @@ pub fn report(job: &Job, curved: &Curved) -> Report {
         peak_memory: peak_memory(),
         threads: rayon::current_num_threads(),
     }
+}
+
+fn plane(curved: &Curved) -> Option<PlaneReport> {
+    let plane = curved.boundary.plane?;
+    let on = |classification: &Classification| match classification {
+        Classification::Surface(surface) => Some(*surface),
+        _ => None,
+    };
+    let lying = curved.boundary.faces.iter().zip(&curved.association.faces).filter(|(_, on_cad)| on(on_cad).is_some());
+    let walls: BTreeSet<EntityKey> = lying.map(|(face, _)| face.entity).collect();
+    let surfaces: BTreeSet<usize> = curved.association.faces.iter().filter_map(on).collect();
+    let edges = surfaces.iter().flat_map(|&surface| curved.association.surfaces[surface].group.entities());
+    let curves = edges.collect::<BTreeSet<_>>().len();
+    Some(PlaneReport { point: plane.point.to_array(), normal: plane.normal.to_array(), walls: walls.len(), curves })
 }
 
 fn walls(curved: &Curved) -> WallReport {

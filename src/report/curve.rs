@@ -20,6 +20,9 @@ pub struct Report {
     pub input: Input,
     /// Polynomial order.
     pub order: u8,
+    /// What a plane mesh is; nothing of a mesh of volumes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plane: Option<PlaneReport>,
     /// Whether every element is proven valid.
     pub certified: bool,
     /// Nodes of the linear and of the curved mesh.
@@ -65,6 +68,19 @@ pub struct Input {
     pub cad_unit: String,
     /// What the CAD was multiplied by.
     pub cad_scale: f64,
+}
+
+/// A plane mesh: what is called a face of its boundary is an edge.
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
+pub struct PlaneReport {
+    /// A point of its plane.
+    pub point: [f64; 3],
+    /// The unit normal that its cells turn about.
+    pub normal: [f64; 3],
+    /// Boundary entities of the mesh that lie on CAD edges.
+    pub walls: usize,
+    /// CAD edges that they lie on.
+    pub curves: usize,
 }
 
 /// Counts of nodes.

@@ -46,6 +46,16 @@ pub enum Freedom {
 }
 
 impl Freedom {
+    /// What is left of it in the plane of this unit normal.
+    #[must_use]
+    pub fn within(self, normal: DVec3) -> Freedom {
+        match self {
+            Freedom::Space => Freedom::Plane(normal),
+            Freedom::Plane(own) => own.cross(normal).try_normalize().map_or(Freedom::Fixed, Freedom::Line),
+            Freedom::Line(_) | Freedom::Fixed => self,
+        }
+    }
+
     /// The part of a vector that lies in the free directions.
     fn keep(self, v: DVec3) -> DVec3 {
         match self {

@@ -78,7 +78,7 @@ fn damaged_meshes() {
     assert_ne!(unknown, text);
     place.refuses(Input::mesh(place.write("unknown.msh", unknown)), &["unknown.msh, line ", "element type 777"]);
     let flat = place.mesh("flat.msh", |parts| parts.blocks.retain(|block| block.cell.dimension() < 3));
-    place.refuses(Input::mesh(flat), &["flat.msh", "no volume elements"]);
+    place.refuses(Input::mesh(flat), &["flat.msh", "no volume elements", "in one plane"]);
     let curved = place.dir.path().join("in/p2.msh");
     sagitta(Input::default().arguments(&curved)).expect(0);
     place.refuses(Input::mesh(curved), &["p2.msh", "P2", "linear mesh"]);

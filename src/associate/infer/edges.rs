@@ -38,7 +38,7 @@ pub(super) fn strings(
         let found: Vec<EdgeId> = along[edge].iter().filter(bounds_all).filter(real).copied().collect();
         match (&found[..], &decided[..]) {
             (&[only], _) => of_edge.entry(only).or_default().push(boundary.edges[edge]),
-            (_, &[first, second, ..]) => doubts.push((edge, Doubt::NoEdge([first[0], second[0]]))),
+            (_, &[first, second, ..]) => doubts.push((edge, Doubt::NoEdge([first[0].into(), second[0].into()]))),
             _ => {}
         }
     }

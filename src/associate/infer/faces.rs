@@ -57,7 +57,7 @@ pub(super) fn decide(
                 _ => Doubt::NoCommonFace,
             })
         }
-        _ => Err(Doubt::SeveralFaces(left.iter().map(|candidate| candidate.face).collect())),
+        _ => Err(Doubt::Several(left.iter().map(|candidate| candidate.face.into()).collect())),
     };
     candidates.iter().enumerate().map(|(f, left)| outcome(f, left)).collect()
 }

@@ -113,7 +113,7 @@ impl Incidence {
 }
 
 /// How far each boundary node may be from what holds it; `None` inside the volume.
-fn slacks(mesh: &Mesh, boundary: &Boundary, tolerance: &Tolerance) -> Vec<Option<f64>> {
+pub(super) fn slacks(mesh: &Mesh, boundary: &Boundary, tolerance: &Tolerance) -> Vec<Option<f64>> {
     let spacing = if tolerance.is_wide() { along_wall(mesh, boundary) } else { shortest_edges(mesh, boundary) };
     let mut slacks = vec![None; mesh.points().len()];
     for node in boundary.corners.iter().flatten() {

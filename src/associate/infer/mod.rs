@@ -17,12 +17,13 @@
 
 mod edges;
 mod faces;
+mod in_plane;
 mod incidence;
 mod near;
 mod smooth_groups;
 mod volume_sides;
 
-use cad::{Aabb, EntityId, FaceId, Model};
+use cad::{Aabb, EntityId, Model};
 
 use super::{Candidates, Joints, Side, Teller, sides};
 use crate::mesh::{Boundary, Mesh};
@@ -91,34 +92,34 @@ impl Tolerance {
 /// Why a face or edge is associated with nothing.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Doubt {
-    /// No CAD face holds any of its corners: the patch may not be part of the CAD.
-    #[error("its points are on no CAD face")]
+    /// No CAD face (in the plane: edge) holds any of its corners: the patch may not be part of the CAD.
+    #[error("its points are not on the CAD")]
     OffCad,
     /// Some of its corners are on the CAD, and some are not.
-    #[error("some of its points are on no CAD face")]
+    #[error("some of its points are not on the CAD")]
     PartlyOffCad,
-    /// It runs beside a CAD face, farther from it than the tolerance, on which no other mesh face lies.
-    #[error("its points are up to {distance:.1e} off {face}, beyond the tolerance")]
+    /// It runs beside a CAD face or edge, farther from it than the tolerance, on which nothing else of the mesh lies.
+    #[error("its points are up to {distance:.1e} off {on}, beyond the tolerance")]
     Beside {
-        /// The nearest CAD face.
-        face: FaceId,
+        /// The nearest one.
+        on: EntityId,
         /// The largest distance of its corners from it.
         distance: f64,
     },
     /// Each corner is on the CAD, but on no common face.
     #[error(
-        "its points are on the CAD, but no CAD face, and no set of faces that meet smoothly, contains them all and runs along it"
+        "its points are on the CAD, but no part of it, and no set of parts that meet smoothly, contains them all and runs along it"
     )]
     NoCommonFace,
-    /// Several CAD faces hold it, and its neighbours do not decide which.
+    /// Several CAD faces or edges hold it, and its neighbours do not decide which.
     #[error("it may lie on {}", list(.0))]
-    SeveralFaces(Vec<FaceId>),
+    Several(Vec<EntityId>),
     /// The linkage file says nothing of it, and where it lies by geometry does not go with the file.
     #[error("the linkage file says nothing of it, and that it lies on {0} does not go with the file")]
     Unfit(EntityId),
     /// It lies between faces on different CAD faces, but along none of their edges.
     #[error("it lies between {} and {}, but along no CAD edge that they share", .0[0], .0[1])]
-    NoEdge([FaceId; 2]),
+    NoEdge([EntityId; 2]),
 }
 
 impl Doubt {
@@ -137,19 +138,19 @@ impl Doubt {
             }
             Doubt::Beside { distance, .. } => {
                 format!(
-                    "--tolerance {:.1e} takes it as on the CAD face; --straight leaves its patch as it is",
+                    "--tolerance {:.1e} takes it as on the CAD; --straight leaves its patch as it is",
                     2.0 * distance
                 )
             }
-            Doubt::NoCommonFace | Doubt::SeveralFaces(_) | Doubt::Unfit(_) | Doubt::NoEdge(_) => {
+            Doubt::NoCommonFace | Doubt::Several(_) | Doubt::Unfit(_) | Doubt::NoEdge(_) => {
                 "say where it lies in a linkage file, or leave its patch straight by --straight".into()
             }
         }
     }
 }
 
-fn list(faces: &[FaceId]) -> String {
-    faces.iter().map(ToString::to_string).collect::<Vec<_>>().join(" or ")
+fn list(entities: &[EntityId]) -> String {
+    entities.iter().map(ToString::to_string).collect::<Vec<_>>().join(" or ")
 }
 
 /// What was found.
@@ -176,10 +177,14 @@ impl Inference {
 pub fn infer(mesh: &Mesh, boundary: &Boundary, model: &Model, tolerance: &Tolerance) -> Inference {
     let joints = Joints::new(model);
     let sides = sides(mesh, boundary);
-    let first = infer_within(mesh, boundary, model, &joints, &sides, tolerance, None);
+    let within = |tolerance: &Tolerance, told: Option<&VolumeSides>| match boundary.plane {
+        Some(_) => in_plane::infer(mesh, boundary, model, &joints, &sides, tolerance),
+        None => infer_within(mesh, boundary, model, &joints, &sides, tolerance, told),
+    };
+    let first = within(tolerance, None);
     let Some(wider) = tolerance.wider().filter(|_| !first.faces.is_empty()) else { return first };
     let told = VolumeSides::of(&first.candidates.sheets, &joints, &sides);
-    let mut second = infer_within(mesh, boundary, model, &joints, &sides, &wider, Some(&told));
+    let mut second = within(&wider, Some(&told));
     let more = first.faces.len().saturating_sub(second.faces.len());
     if more == 0 {
         return first;

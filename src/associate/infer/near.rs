@@ -41,7 +41,7 @@ pub(super) fn find(
         let distance = corners.iter().map(|&x| group.distance(x)).fold(0.0, f64::max);
         let next = corners.iter().cycle().skip(1);
         let shortest = corners.iter().zip(next).map(|(a, b)| a.distance(*b)).fold(f64::INFINITY, f64::min);
-        (distance <= NEAR * shortest && is_nearest).then_some(Doubt::Beside { face: id, distance })
+        (distance <= NEAR * shortest && is_nearest).then_some(Doubt::Beside { on: id.into(), distance })
     };
     let found = |(face, doubt): &(usize, Doubt)| {
         let found = match doubt {

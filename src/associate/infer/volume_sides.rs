@@ -39,8 +39,12 @@ impl VolumeSides {
 
     /// Whether mesh faces have their outward normal with the CAD face's; `None` where none shows it, or both kinds are there.
     pub(super) fn outward(&self, face: FaceId) -> Option<bool> {
-        let [against, with] = self.told.get(&face)?;
-        let share = *with as f64 / (against + with) as f64;
-        (share >= ONE_SIDE).then_some(true).or((share <= 1.0 - ONE_SIDE).then_some(false))
+        told_by_most(*self.told.get(&face)?)
     }
+}
+
+/// Whether nearly all are with it, or against; `None` where both kinds are there.
+pub(super) fn told_by_most([against, with]: [usize; 2]) -> Option<bool> {
+    let share = with as f64 / (against + with) as f64;
+    (share >= ONE_SIDE).then_some(true).or((share <= 1.0 - ONE_SIDE).then_some(false))
 }

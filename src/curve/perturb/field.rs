@@ -18,7 +18,7 @@ const LEAST_REACH: f64 = 0.6;
 /// A boundary face of the elevated mesh that moves the nodes around it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WallFace {
-    /// Triangle or quadrilateral.
+    /// Triangle or quadrilateral; line.
     pub cell: Cell,
     /// Its nodes, in internal order.
     pub nodes: Vec<NodeId>,
@@ -179,14 +179,15 @@ impl<'a> Field<'a> {
     }
 }
 
-/// The closest point of a linear wall face, a quadrilateral taken as two triangles: reference coordinates and position.
+/// The closest point of a linear wall face, a quadrilateral taken as two triangles: reference coordinates and position. A line is a
+/// triangle that ends where it began.
 fn closest_on_face(face: &WallFace, points: &[DVec3], x: DVec3) -> ([f64; 3], DVec3) {
     let corners = face.corners();
     let at = |q: usize| points[corners[q].index()];
     let unit = |q: usize| DVec3::from(face.cell.corners()[q].map(f64::from));
     let mut best: Option<(f64, [f64; 3], DVec3)> = None;
-    for second in 1..corners.len() - 1 {
-        let triangle = [0, second, second + 1];
+    for second in 1..(corners.len() - 1).max(2) {
+        let triangle = [0, second, (second + 1) % corners.len()];
         let weights = closest_on_triangle(x, triangle.map(at));
         let mix = |value: &dyn Fn(usize) -> DVec3| -> DVec3 {
             triangle.iter().zip(weights).map(|(&q, w)| value(q) * w).sum()

@@ -68,8 +68,9 @@ impl<'a> CadConstraint<'a> {
     }
 }
 
-impl Constraint for CadConstraint<'_> {
-    fn freedom(&self, node: NodeId, at: DVec3) -> Freedom {
+impl CadConstraint<'_> {
+    /// The freedom that what holds the node leaves it.
+    fn held_by_cad(&self, node: NodeId, at: DVec3) -> Freedom {
         let (n, Case { settings, association, .. }) = (node.index(), self.case);
         let classification = self.wall.classification(n);
         let frozen = settings.freeze_linear && n < self.linear_nodes;
@@ -99,7 +100,7 @@ impl Constraint for CadConstraint<'_> {
         }
     }
 
-    fn restrict(&self, node: NodeId, from: DVec3, wish: DVec3) -> DVec3 {
+    fn place_on_cad(&self, node: NodeId, from: DVec3, wish: DVec3) -> DVec3 {
         let classification = self.wall.classification(node.index());
         if self.wall.is_released(node.index()) {
             return wish;
@@ -114,6 +115,18 @@ impl Constraint for CadConstraint<'_> {
             Classification::Free => wish,
             Classification::Plane(_) | Classification::Vertex(_) | Classification::Straight => from,
         }
+    }
+}
+
+impl Constraint for CadConstraint<'_> {
+    fn freedom(&self, node: NodeId, at: DVec3) -> Freedom {
+        let own = self.held_by_cad(node, at);
+        self.case.boundary.plane.map_or(own, |plane| own.within(plane.normal))
+    }
+
+    fn restrict(&self, node: NodeId, from: DVec3, wish: DVec3) -> DVec3 {
+        let place = self.place_on_cad(node, from, wish);
+        self.case.boundary.plane.map_or(place, |plane| plane.closest(place))
     }
 
     fn images(&self) -> &[Image] {

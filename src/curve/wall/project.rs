@@ -94,11 +94,19 @@ impl<'a> Projector<'_, 'a> {
                 let feet: Vec<Option<Foot>> = wishes.iter().map(|&x| group.closest(x, None)).collect();
                 let unproven = feet.iter().filter(|foot| !foot.is_some_and(|foot| foot.is_proven())).count();
                 let positions = feet.iter().zip(wishes).map(|(foot, &wish)| foot.map_or(wish, |foot| foot.point));
-                return Feet { positions: positions.collect(), queries: feet.len(), unproven };
+                return Feet { positions: self.in_plane(positions), queries: feet.len(), unproven };
             }
             _ => wishes.to_vec(),
         };
-        Feet { positions, queries: 0, unproven: 0 }
+        Feet { positions: self.in_plane(positions.into_iter()), queries: 0, unproven: 0 }
+    }
+
+    /// Positions, those of a plane mesh in its plane: the CAD may be off it by rounding.
+    fn in_plane(&self, positions: impl Iterator<Item = DVec3>) -> Vec<DVec3> {
+        match self.level.plane() {
+            Some(plane) => positions.map(|x| plane.closest(x)).collect(),
+            None => positions.collect(),
+        }
     }
 
     /// Puts some nodes at their feet.

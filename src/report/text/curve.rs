@@ -4,14 +4,20 @@ use std::cmp::Ordering;
 use std::collections::BTreeSet;
 use std::fmt::{self, Display};
 
+use glam::DVec3;
+
 use super::{LISTED, certificate, number, patch, position};
 use crate::report::Report;
-use crate::report::curve::WallVerdict;
+use crate::report::curve::{PlaneReport, WallVerdict};
 
 impl Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (order, nodes) = (self.order, self.nodes);
         writeln!(f, "{} -> P{order}: {} nodes ({} in the linear mesh)", self.input.mesh, nodes.curved, nodes.linear)?;
+        if let Some(plane) = &self.plane {
+            let PlaneReport { walls, curves, .. } = plane;
+            writeln!(f, "plane mesh at {}, {walls} walls on {curves} curves", equation(plane))?;
+        }
         writeln!(f)?;
         self.cells(f)?;
         writeln!(f)?;
@@ -29,7 +35,24 @@ impl Display for Report {
     }
 }
 
+/// The plane of a mesh in words: `z = 0`.
+fn equation(plane: &PlaneReport) -> String {
+    let (normal, point) = (DVec3::from(plane.normal), DVec3::from(plane.point));
+    let height = normal.dot(point);
+    for (name, axis) in [("x", DVec3::X), ("y", DVec3::Y), ("z", DVec3::Z)] {
+        if normal.dot(axis).abs() == 1.0 {
+            return format!("{name} = {}", height * normal.dot(axis) + 0.0);
+        }
+    }
+    format!("{:.6} x + {:.6} y + {:.6} z = {height:.6}", normal.x, normal.y, normal.z)
+}
+
 impl Report {
+    /// What bounds its cells.
+    fn side(&self) -> &'static str {
+        if self.plane.is_some() { "edge" } else { "face" }
+    }
+
     fn cells(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let heads = ["cell", "count", "straight", "C_WCN min", "mean", "C_JAC min", "J/Jc >=", "valid"];
         let [cell, count, straight, wcn, mean, jac, proven, valid] = heads;
@@ -43,7 +66,8 @@ impl Report {
     }
 
     fn patches(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [name, faces, distance, moved, groups] = ["patch", "faces", "CAD distance", "node move", "CAD faces"];
+        let [faces, groups] = if self.plane.is_some() { ["edges", "CAD edges"] } else { ["faces", "CAD faces"] };
+        let [name, distance, moved] = ["patch", "CAD distance", "node move"];
         writeln!(f, "{name:<24}{faces:>9}{distance:>14}{moved:>11}  {groups}")?;
         for p in &self.patches {
             let distance = p.cad_distance_max.map_or("-".to_owned(), |d| format!("{d:.2e}"));
@@ -52,7 +76,7 @@ impl Report {
             writeln!(f, "{name:<24}{:>9}{distance:>14}{moved:>11.2e}  {groups}", p.faces)?;
         }
         if self.faces_without_cad > 0 {
-            writeln!(f, "{} boundary faces are not associated with the CAD", self.faces_without_cad)?;
+            writeln!(f, "{} boundary {}s are not associated with the CAD", self.faces_without_cad, self.side())?;
         }
         Ok(())
     }
@@ -95,19 +119,20 @@ impl Report {
         if self.off_cad.is_empty() {
             return Ok(());
         }
-        writeln!(f, "off the CAD: {} boundary faces, so that all elements are valid", self.off_cad.len())?;
+        let side = self.side();
+        writeln!(f, "off the CAD: {} boundary {side}s, so that all elements are valid", self.off_cad.len())?;
         for face in self.off_cad.iter().take(LISTED) {
             let way = match (face.order, face.fraction) {
                 (Some(order), Some(fraction)) => {
                     let base =
-                        if order == 1 { "the straight face".to_owned() } else { format!("the face of P{order}") };
+                        if order == 1 { format!("the straight {side}") } else { format!("the {side} of P{order}") };
                     format!("{:.0} % of the way from {base} to the CAD", 100.0 * fraction)
                 }
                 _ => "released".to_owned(),
             };
             let far = face.cad_distance.map_or_else(String::new, |d| format!("up to {d:.2e} off, "));
             let (element, entity, at) = (face.element, &face.entity, position(face.position));
-            writeln!(f, "  face {element} of {entity}: {far}{way}, near {at}")?;
+            writeln!(f, "  {side} {element} of {entity}: {far}{way}, near {at}")?;
         }
         Ok(())
     }
@@ -116,10 +141,11 @@ impl Report {
         if self.open_faces.is_empty() {
             return Ok(());
         }
-        writeln!(f, "open: {} boundary faces belong to the CAD and stay straight", self.open_faces.len())?;
+        let side = self.side();
+        writeln!(f, "open: {} boundary {side}s belong to the CAD and stay straight", self.open_faces.len())?;
         for face in self.open_faces.iter().take(LISTED) {
             let (entity, nodes, at, cause) = (&face.entity, &face.nodes, position(face.position), &face.cause);
-            writeln!(f, "  face of {entity} with nodes {nodes:?} near {at}: {cause}")?;
+            writeln!(f, "  {side} of {entity} with nodes {nodes:?} near {at}: {cause}")?;
         }
         let more = self.open_faces.len().saturating_sub(LISTED);
         if more > 0 {
@@ -135,17 +161,17 @@ impl Report {
     }
 
     fn walls(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let w = &self.walls;
+        let (w, side) = (&self.walls, self.side());
         if w.failures.is_empty() {
-            return writeln!(f, "walls: none of {} faces folds (proven)", w.faces);
+            return writeln!(f, "walls: none of {} {side}s folds (proven)", w.faces);
         }
-        writeln!(f, "walls: {} of {} faces FOLD, {} are undecided", w.folded, w.faces, w.undecided)?;
+        writeln!(f, "walls: {} of {} {side}s FOLD, {} are undecided", w.folded, w.faces, w.undecided)?;
         for face in w.failures.iter().take(LISTED) {
             let verdict = match face.verdict {
                 WallVerdict::Folded => "folded",
                 WallVerdict::Undecided => "undecided",
             };
-            writeln!(f, "  {verdict} face {} of {} near {}", face.element, face.entity, position(face.position))?;
+            writeln!(f, "  {verdict} {side} {} of {} near {}", face.element, face.entity, position(face.position))?;
         }
         Ok(())
     }

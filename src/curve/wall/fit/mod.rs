@@ -27,7 +27,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
-use crate::associate::{Classification, normal_at};
+use crate::associate::{Classification, normal_at, normal_of};
 use crate::curve::level::{Case, Level};
 use crate::element::Cell;
 use crate::mesh::NodeId;
@@ -171,7 +171,7 @@ impl Fit<'_, '_> {
                     vec![first, normal.cross(first)]
                 })
             }
-            (Classification::Curve(_), Some(Evaluation::Curve(point))) => point.tangent.into_iter().collect(),
+            (_, Some(Evaluation::Curve(point))) => point.tangent.into_iter().collect(),
             _ => Vec::new(),
         };
         Slider { node, along, step: DVec3::ZERO, at: Vec::new() }
@@ -181,7 +181,11 @@ impl Fit<'_, '_> {
         let table = &self.tables[&self.cell(part)];
         let (nodes, rim, off) = (self.nodes(part), self.rim(part), NO_DIRECTION * self.size(part));
         let group = self.group(self.classification(part));
-        let normal = |x: DVec3| group.and_then(|group| normal_at(group, x));
+        let plane = self.level.plane();
+        let normal = |x: DVec3| match plane {
+            None => group.and_then(|group| normal_at(group, x)),
+            Some(_) => group.and_then(|group| normal_of(group, &group.closest(x, None)?, plane)),
+        };
         let feet = self.feet(part, &table.fine);
         let away = |(x, foot): &(DVec3, Option<Foot>)| match foot {
             Some(foot) if foot.distance > off => (*x - foot.point) / foot.distance,
@@ -208,7 +212,7 @@ impl Fit<'_, '_> {
         let sliders = responses.collect();
         let corners: Vec<DVec3> = nodes[..table.straight[0].len()].iter().map(|&n| self.straight(n)).collect();
         let slopes = table.slopes.iter().zip(&table.straight);
-        let slopes: Vec<Vec<DVec3>> = slopes.map(|(slopes, straight)| gradients(slopes, straight, &corners)).collect();
+        let slopes: Vec<Vec<DVec3>> = slopes.map(|(slopes, straight)| gradients(slopes, straight, &corners, plane.is_some())).collect();
         let mean = |r: usize, q: usize| slopes.iter().map(|s| s[r].dot(s[q])).sum::<f64>() / slopes.len() as f64;
         let products = (0..rim.len()).map(|r| (0..rim.len()).map(|q| mean(r, q)).collect()).collect();
         let distances = feet.iter().map(|(_, foot)| foot.map_or(f64::INFINITY, |foot| foot.distance)).collect();

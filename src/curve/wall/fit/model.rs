@@ -129,14 +129,23 @@ impl Model {
     }
 }
 
-/// Gradients in space of functions with the given slopes; zero on edges, and where the corners lie in a line.
+/// Gradients in space of functions with the given slopes; zero on edges, but for those of a plane mesh (`lines`), and where the corners lie
+/// in a line.
 ///
 /// `straight` are the slopes of the corners' linear functions.
-pub(super) fn gradients(slopes: &[[f64; 2]], straight: &[[f64; 2]], corners: &[DVec3]) -> Vec<DVec3> {
+pub(super) fn gradients(
+    slopes: &[[f64; 2]],
+    straight: &[[f64; 2]],
+    corners: &[DVec3],
+    lines: bool,
+) -> Vec<DVec3> {
     let axis = |a: usize| -> DVec3 { corners.iter().zip(straight).map(|(x, s)| *x * s[a]).sum() };
     let (a, b) = (axis(0), axis(1));
     let (aa, ab, bb) = (a.dot(a), a.dot(b), b.dot(b));
     let area = aa * bb - ab * ab;
+    if lines && aa > 0.0 {
+        return slopes.iter().map(|s| a * (s[0] / aa)).collect();
+    }
     if area <= 0.0 {
         return vec![DVec3::ZERO; slopes.len()];
     }
