@@ -122,6 +122,7 @@ impl Binder<'_> {
             let (label, entities) = (sheet.label.clone(), names(&entities));
             return Err(AssociateError::Elsewhere { label, entities, other: other.to_string(), teller: self.teller });
         }
+        self.result.farthest = self.result.farthest.max(farthest);
         // Noise that the surfaces show must be granted to the edges too.
         self.slack = self.slack.max(4.0 * farthest);
         Ok(index)

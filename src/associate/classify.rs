@@ -3,13 +3,13 @@
 use std::collections::BTreeSet;
 
 use cad::{Aabb, EntityId, Kind, Model};
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::host::{is_host, kind_of};
 use super::side::SMOOTH;
 use super::witnesses::{combined, completed};
 use super::{
-    AssociateError, Association, Candidates, Doubt, Inference, Linkage, LinkageError, Tolerance, associate, infer,
+    AssociateError, Association, Candidates, Doubt, Inference, Linkage, LinkageError, ON_CAD, Tolerance, associate, infer,
     linked, sides,
 };
 use crate::mesh::{Boundary, EntityKey, Mesh};
@@ -84,6 +84,20 @@ pub fn classify(
     }
 }
 
+/// Whether geometry decides everything, and something otherwise than the tags say: these are another file's numbers. Tags are held to points
+/// by a fraction of the mesh's size, and a mesh with a far field is so large that both sides of a wing are near each other.
+fn contradicts(inference: &Inference, tags: &Candidates) -> bool {
+    let of = |candidates: &Candidates| -> FxHashMap<usize, Vec<EntityId>> {
+        let linked = candidates.sheets.iter().filter(|sheet| !sheet.entities.is_empty());
+        linked.flat_map(|sheet| sheet.items.iter().map(|&face| (face, sheet.entities.clone()))).collect()
+    };
+    let (found, said) = (of(&inference.candidates), of(tags));
+    let otherwise = |(face, on): (&usize, &Vec<EntityId>)| {
+        found.get(face).is_some_and(|own| on.iter().any(|entity| !own.contains(entity)))
+    };
+    inference.faces.is_empty() && said.iter().any(otherwise)
+}
+
 struct Classifier<'a> {
     sources: &'a Sources<'a>,
     mesh: &'a Mesh,
@@ -129,12 +143,21 @@ impl Classifier<'_> {
         let tags =
             if self.sources.by_tags { Candidates::by_tags(mesh, boundary, model) } else { Candidates::default() };
         let by_tags = self.held(tags.clone(), None, "the mesh's entity tags".into());
+        let is_near = |own: &Classified| own.association.farthest <= ON_CAD * self.model.diagonal();
         match &by_tags {
-            Ok(_) if self.is_whole(&tags) => return by_tags,
-            Err(error) if !error.tags_are_of_no_use() => return by_tags,
+            Ok(own) if self.is_whole(&tags) && is_near(own) => return by_tags,
             _ => {}
         }
         let mut inference = self.infer();
+        let contradicted = contradicts(&inference, &tags);
+        match &by_tags {
+            Ok(_) if self.is_whole(&tags) && !contradicted => return by_tags,
+            Err(error) if !error.tags_are_of_no_use() && !contradicted => return by_tags,
+            _ => {}
+        }
+        if contradicted {
+            return self.by_geometry(inference.candidates.clone(), inference, "geometry");
+        }
         if by_tags.is_err() && !self.is_usable(&inference) {
             // Mesh and CAD of different sizes or positions may have some faces in common.
             return by_tags.map_err(|error| self.explained(error, &inference));
@@ -145,6 +168,15 @@ impl Classifier<'_> {
             classified.inference = Some(inference);
             return Ok(classified);
         };
+        self.by_geometry(candidates, inference, source)
+    }
+
+    fn by_geometry(
+        &self,
+        candidates: Candidates,
+        inference: Inference,
+        source: &str,
+    ) -> Result<Classified, AssociateError> {
         let [faces, edges] = [inference.undecided(), inference.edges.len()];
         let mut classified = self.held(candidates, Some(inference), source.into())?;
         let why = if self.sources.by_tags { "the mesh's entity tags do not match the CAD's numbers; " } else { "" };

@@ -109,6 +109,8 @@ pub struct Association {
     pub faces: Vec<Classification>,
     /// Classification of the inner nodes of every boundary edge, by index in [`Boundary::edges`](crate::mesh::Boundary::edges).
     pub edges: Vec<Classification>,
+    /// The largest distance of a linear node from the CAD faces or edges that candidates put it on.
+    pub farthest: f64,
     /// What a user should know and need not fix.
     pub notes: Vec<String>,
 }

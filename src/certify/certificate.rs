@@ -123,7 +123,8 @@ impl Bench {
         self.buffer.normal = None;
         let (cell, order) = elements.read(element, &mut self.buffer);
         let corners = (!self.buffer.corners.is_empty()).then_some(self.buffer.corners.as_slice());
-        work(&mut self.judge, &Shape { cell, order, points: &self.buffer.points, corners, normal: self.buffer.normal })
+        let upright = self.buffer.normal.as_slice();
+        work(&mut self.judge, &Shape { cell, order, points: &self.buffer.points, corners, upright })
     }
 
     fn summary(&mut self, elements: &impl Elements, range: std::ops::Range<usize>, settings: &Settings) -> Summary {

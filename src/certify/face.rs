@@ -1,4 +1,4 @@
-//! Faces on walls: a proof that a curved triangle or quadrilateral does not fold.
+//! Faces on walls: a proof that a curved triangle or quadrilateral, in a plane mesh a line, does not fold.
 //!
 //! A face `x(u, v)` stands upright where its normal `x_u x x_v` has a positive product with the mean normal `m` of the
 //! linear face. That product is the determinant of `(x_u, x_v, m)`, a polynomial of degree `2 (p - 1)` on triangles and
@@ -10,6 +10,9 @@
 //! than 90 degrees against its linear face: those of the torus at scale 0.5 stand at up to 87 degrees to the wall itself in their
 //! corners. Where `m` does not prove it, another vector is asked for, on the side of `m`: the middle of the face's own normals, if
 //! a survey finds them all on the side of the CAD's normals ([`crate::curve::proof`]); a face that doubles back over its wall is none such.
+//!
+//! A line in a plane of normal `m` runs forward where its tangent has a positive product with its chord `t`: that product is the
+//! determinant of `(x_u, m x t, m)`, a polynomial of degree `p - 1`.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -25,7 +28,7 @@ use crate::element::{Cell, Order, basis};
 /// A curved face of a wall.
 #[derive(Clone, Debug)]
 pub struct WallFace {
-    /// Triangle or quadrilateral.
+    /// Triangle or quadrilateral; line.
     pub cell: Cell,
     /// Its order.
     pub order: Order,
@@ -33,6 +36,8 @@ pub struct WallFace {
     pub points: Vec<DVec3>,
     /// The corners of the linear face.
     pub corners: Vec<DVec3>,
+    /// The unit normal of the plane that a line lies in.
+    pub plane: Option<DVec3>,
 }
 
 /// A wall face that is not proven to be free of folds.
@@ -102,13 +107,18 @@ impl Judge {
     ///
     /// `other` is asked for a second vector where the mean normal of the linear face does not prove it.
     pub fn fold(&mut self, face: &WallFace, other: impl FnOnce() -> Option<DVec3>, settings: &Settings) -> Verdict {
-        let normal = mean_normal(&face.corners);
+        let normal = match face.plane {
+            None => mean_normal(&face.corners),
+            Some(_) => face.corners.windows(2).map(|ends| ends[1] - ends[0]).sum::<DVec3>().normalize_or_zero(),
+        };
         if face.corners.len() != face.cell.corner_count() || normal == DVec3::ZERO || !normal.is_finite() {
             return Verdict::Undecided;
         }
         let mut against = |vector: DVec3| {
-            let WallFace { cell, order, ref points, ref corners } = *face;
-            let shape = Shape { cell, order, points, corners: Some(corners), normal: Some(vector) };
+            let WallFace { cell, order, ref points, ref corners, plane } = *face;
+            let of_line = plane.map(|plane| [plane.cross(vector), plane]);
+            let upright = of_line.as_ref().map_or(std::slice::from_ref(&vector), |both| &both[..]);
+            let shape = Shape { cell, order, points, corners: Some(corners), upright };
             let Some(frame) = frame(&shape) else { return Verdict::Undecided };
             match self.fold_in::<f64>(&shape, frame, settings) {
                 Verdict::Undecided => self.fold_in::<Double>(&shape, frame, settings),
@@ -148,7 +158,7 @@ mod tests {
         let unit = |at: &[u8; 3], p: usize| DVec3::from(at.map(|x| f64::from(x) / p as f64));
         let points = lattice(cell, order).iter().map(|at| map(unit(at, order.get()))).collect();
         let corners = lattice(cell, Order::LINEAR).iter().map(|at| map(unit(at, 1))).collect();
-        WallFace { cell, order, points, corners }
+        WallFace { cell, order, points, corners, plane: None }
     }
 
     /// Somewhere else, turned, small: no verdict may depend on it.
@@ -176,6 +186,20 @@ mod tests {
                     assert_eq!(verdict(&face(cell, order, bowl)), Verdict::Valid, "{cell} {order}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn lines_that_run_back_are_found() {
+        for order in Order::all().filter(|order| order.get() >= 3) {
+            let line = |back: f64| {
+                let at = |s: f64| placed(DVec3::new(s - back * (s * (1.0 - s) * (1.0 - 2.0 * s)), 0.3 * s * s, 0.0));
+                let points = lattice(Cell::Line, order).iter().map(|n| at(f64::from(n[0]) / order.get() as f64)).collect();
+                let plane = Some((placed(DVec3::Z) - placed(DVec3::ZERO)).normalize());
+                verdict(&WallFace { cell: Cell::Line, order, points, corners: vec![at(0.0), at(1.0)], plane })
+            };
+            assert_eq!((line(0.0), line(-1.5)), (Verdict::Valid, Verdict::Valid), "{order}");
+            assert!(matches!(line(4.0), Verdict::Invalid { .. }), "{order}");
         }
     }
 

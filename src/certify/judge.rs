@@ -22,20 +22,21 @@ pub struct Shape<'a> {
     pub points: &'a [DVec3],
     /// The corners of the linear element that `J_c` is taken from; its own straight corners where there is none.
     pub corners: Option<&'a [DVec3]>,
-    /// The unit normal that a face is judged against: its `J` is `(x_u x x_v) . m`. Volumes have none.
-    pub normal: Option<DVec3>,
+    /// The unit vectors that stand on a face or line and complete its Jacobian matrix: a face's `J` is `(x_u x x_v) . m`, a line's
+    /// `x_u . (a x b)`. Volumes have none.
+    pub upright: &'a [DVec3],
 }
 
 impl Shape<'_> {
-    /// Loads coordinates of the element, shifted and scaled, and after them the normal.
+    /// Loads coordinates of the element, shifted and scaled, and after them the vectors that stand on it.
     fn load<T: Real>(&self, into: &mut Vec<[T; 3]>, points: &[DVec3], frame: Frame) {
         load(into, points, frame.scale);
-        into.extend(self.last_node());
+        into.extend(self.last_nodes());
     }
 
-    /// A face's normal, which stands after its nodes as it is.
-    fn last_node<T: Real>(&self) -> Option<[T; 3]> {
-        self.normal.map(|normal| normal.to_array().map(T::of))
+    /// The vectors that stand on it, which follow its nodes as they are.
+    fn last_nodes<T: Real>(&self) -> impl Iterator<Item = [T; 3]> + '_ {
+        self.upright.iter().map(|vector| vector.to_array().map(T::of))
     }
 }
 
@@ -96,7 +97,7 @@ impl Judge {
         load(&mut self.simple.nodes, shape.points, frame.scale);
         let off = straight::distance(shape.cell, shape.order, &self.simple.nodes, frame.largest)?;
         self.simple.nodes.truncate(shape.cell.corner_count());
-        self.simple.nodes.extend(shape.last_node());
+        self.simple.nodes.extend(shape.last_nodes());
         let product = Product::of(shape.cell, Order::LINEAR);
         let columns = product.coefficients(&mut self.simple, &mut self.root);
         let largest = absolute(&self.root);
@@ -214,18 +215,18 @@ impl Arithmetic for Double {
     }
 }
 
-/// The frame of an element; `None` where it has no size, is not finite, lacks nodes, or is a face without a normal.
+/// The frame of an element; `None` where it has no size, is not finite, lacks nodes, or is a face or line without the vectors that stand on it.
 pub(super) fn frame(shape: &Shape) -> Option<Frame> {
     let points = shape.points;
     let counted = points.len() == shape.cell.node_count(shape.order)
         && shape.corners.is_none_or(|corners| corners.len() >= shape.cell.corner_count())
-        && shape.cell.has_jacobian(shape.normal.is_some());
+        && shape.cell.has_jacobian(shape.upright.len());
     let &first = points.first().filter(|_| counted)?;
     let largest = points.iter().fold(DVec3::ZERO, |largest, &x| largest.max((x - first).abs()));
-    let finite = points.iter().chain(&shape.normal).all(|x| x.is_finite());
+    let finite = points.iter().chain(shape.upright).all(|x| x.is_finite());
     let frame = Frame::of(largest).filter(|_| finite)?;
-    let normal = shape.normal.unwrap_or(DVec3::ZERO).abs();
-    Some(Frame { largest: DVec3::from(frame.largest).max(normal).to_array(), ..frame })
+    let largest = shape.upright.iter().fold(DVec3::from(frame.largest), |largest, vector| largest.max(vector.abs()));
+    Some(Frame { largest: largest.to_array(), ..frame })
 }
 
 impl Frame {

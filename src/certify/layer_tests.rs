@@ -68,7 +68,7 @@ fn spots_between_survey_points_are_found() {
                     if survey.least(&at(middle), &corners, None)[0] > 0.01 { low = middle } else { high = middle }
                 }
                 let points = at(low);
-                let shape = Shape { cell, order, points: &points, corners: Some(&corners), normal: None };
+                let shape = Shape { cell, order, points: &points, corners: Some(&corners), upright: &[] };
                 if let Verdict::Invalid { at, value } = judge.examine(&shape, &Settings::default()).verdict {
                     let there = jacobian(cell, order, &points, at, None);
                     assert!(there <= value + 1e-9 && value <= 0.0, "{cell} {order} {at:?}: {there} for {value}");

@@ -72,7 +72,7 @@ fn a_meshes_minimum_is_that_of_its_elements() {
     let mut judge = super::Judge::default();
     let (mut relative, mut scaled) = (f64::INFINITY, f64::INFINITY);
     for (cell, order, points, corners) in &loose.elements {
-        let shape = super::Shape { cell: *cell, order: *order, points, corners: Some(corners), normal: None };
+        let shape = super::Shape { cell: *cell, order: *order, points, corners: Some(corners), upright: &[] };
         let finding = judge.examine(&shape, &sharp);
         if let Verdict::Invalid { .. } = finding.verdict {
             continue;

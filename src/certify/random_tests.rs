@@ -78,7 +78,7 @@ fn random_corners(cell: Cell, random: &mut Random) -> (Vec<DVec3>, Option<DVec3>
     let axis = (random.vector() + DVec3::Z * 0.01).normalize();
     let turn = glam::DMat3::from_axis_angle(axis, random.unit() * 6.0);
     let shift = if random.unit() < 0.3 { random.vector() * 1e3 } else { DVec3::ZERO };
-    let is_face = cell.has_jacobian(true);
+    let is_face = cell.has_jacobian(1);
     let within = if is_face { DVec3::new(1.0, 1.0, 0.0) } else { DVec3::ONE };
     let bend = |x: DVec3, random: &mut Random| turn * ((x + random.vector() * 0.1) * within * stretch) + shift;
     (unit_corners(cell).into_iter().map(|x| bend(x, random)).collect(), is_face.then(|| turn * DVec3::Z))
@@ -109,7 +109,7 @@ fn sample(dense: &Dense, random: &mut Random) -> Sample {
     let (sampled, sharp) = (random.unit() < 0.3, Settings { gap: 1e-4, ..Settings::default() });
     let mut judge = Judge::default();
     let mut least = |points: &[DVec3]| {
-        let shape = Shape { cell, order, points, corners: Some(&corners), normal };
+        let shape = Shape { cell, order, points, corners: Some(&corners), upright: normal.as_slice() };
         if sampled { dense.least(points, &corners, normal)[1] } else { judge.examine(&shape, &sharp).relative.upper }
     };
     let (mut low, mut high) = (0.0, 0.5);
@@ -170,7 +170,7 @@ fn survey(seed: u64, elements: usize, points: usize) {
                     order,
                     points: &sample.points,
                     corners: Some(&sample.corners),
-                    normal: sample.normal,
+                    upright: sample.normal.as_slice(),
                 };
                 let start = std::time::Instant::now();
                 let finding = judge.examine(&shape, &settings);

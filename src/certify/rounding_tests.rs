@@ -26,7 +26,7 @@ fn the_bound_covers_what_pairs_of_f64_find() {
             let mut tightest = 0.0f64;
             for _ in 0..40 {
                 let points = bent(cell, order, &mut random);
-                let shape = Shape { cell, order, points: &points, corners: None, normal: None };
+                let shape = Shape { cell, order, points: &points, corners: None, upright: &[] };
                 let frame = frame(&shape).unwrap_or_else(|| unreachable!("a finite element of size 1"));
                 let simple = judge.coefficients::<f64>(&shape, frame);
                 let coefficients = judge.root.clone();

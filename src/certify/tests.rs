@@ -57,7 +57,7 @@ pub(super) fn jacobian(cell: Cell, order: Order, points: &[DVec3], at: [f64; 3],
 }
 
 pub(super) fn examine(cell: Cell, order: Order, points: &[DVec3], corners: Option<&[DVec3]>) -> Finding {
-    Judge::default().examine(&Shape { cell, order, points, corners, normal: None }, &Settings::default())
+    Judge::default().examine(&Shape { cell, order, points, corners, upright: &[] }, &Settings::default())
 }
 
 fn each() -> impl Iterator<Item = (Cell, Order)> {

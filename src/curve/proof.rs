@@ -53,14 +53,18 @@ impl Proof {
 /// Judges those of the faces on the CAD that are `asked` for, by their index in [`Boundary::faces`](crate::mesh::Boundary::faces).
 pub(crate) fn walls(level: &Level, asked: impl Fn(usize) -> bool) -> Walls {
     let (Case { boundary, association, .. }, linear) = (level.case, level.linear());
-    let on_surface = |f: usize| matches!(association.faces[f], Classification::Surface(_)) && boundary.plane.is_none();
+    let on_surface = |f: usize| matches!(association.faces[f], Classification::Surface(_));
     let numbers: Vec<usize> = (0..boundary.faces.len()).filter(|&f| on_surface(f) && asked(f)).collect();
     let face = |f: usize| {
         let corners = boundary.corners[f].iter().map(|n| linear[n.index()]).collect();
-        WallFace { cell: boundary.faces[f].cell, order: level.mesh().order(), points: positions(level, f), corners }
+        let (cell, order, points) = (boundary.faces[f].cell, level.mesh().order(), positions(level, f));
+        WallFace { cell, order, points, corners, plane: boundary.plane.map(|plane| plane.normal) }
     };
     let other = |f: usize| {
         let Classification::Surface(surface) = association.faces[f] else { return None };
+        if boundary.plane.is_some() {
+            return None;
+        }
         axis(level, f, &association.surfaces.get(surface)?.group)
     };
     certify::walls(&numbers, face, other, &certify::Settings::default())

@@ -259,10 +259,10 @@ impl Cell {
         self.dimension() == 2
     }
 
-    /// Whether its map has a Jacobian determinant: a volume's has, a face's with a normal.
+    /// Whether its map has a Jacobian determinant: a volume's has, a face's with one vector that stands on it, a line's with two.
     #[must_use]
-    pub fn has_jacobian(self, with_normal: bool) -> bool {
-        self.dimension() == if with_normal { 2 } else { 3 }
+    pub fn has_jacobian(self, vectors: usize) -> bool {
+        self.dimension() + vectors == 3
     }
 
     /// Corners of the unit cell, each coordinate 0 or 1.

@@ -6,7 +6,7 @@
 //! that of the Jacobian matrix, a polynomial up to and including the apex.
 //!
 //! Triangles and quadrilaterals have two columns; the third is a constant vector, given as one more node after their own,
-//! so that the determinant is `(x_u x x_v) . m`.
+//! so that the determinant is `(x_u x x_v) . m`. A line has one, and two constant vectors.
 
 use super::bernstein::binomial;
 use super::{Cell, Net, Order, basis, lattice};
@@ -22,7 +22,7 @@ pub struct Derivative {
     pub denominator: f64,
 }
 
-/// The columns of the Jacobian matrix of an element with three dimensions, or of a face with its vector `m`.
+/// The columns of the Jacobian matrix of an element with three dimensions, of a face with its vector `m`, or of a line with its two.
 #[must_use]
 pub fn derivatives(cell: Cell, order: Order) -> [Derivative; 3] {
     let (matrix, denominator) = integer_to_bernstein(cell, order);
@@ -30,7 +30,8 @@ pub fn derivatives(cell: Cell, order: Order) -> [Derivative; 3] {
     std::array::from_fn(|axis| {
         let net = Net::control(cell, order).derivative(axis);
         if axis >= cell.dimension() {
-            return Derivative { net, rows: vec![vec![(nodes.len(), 1.0)]], denominator: 1.0 };
+            let vector = nodes.len() + axis - cell.dimension();
+            return Derivative { net, rows: vec![vec![(vector, 1.0)]], denominator: 1.0 };
         }
         let rows = net.indices().into_iter().map(|index| {
             let mut row = vec![0.0; nodes.len()];

@@ -27,6 +27,7 @@ impl Net {
         let p = order.get();
         let degree = match cell {
             Cell::Pyramid => [0, 0, p],
+            Cell::Line => [p, 0, 0],
             Cell::Triangle | Cell::Quad => [p, p, 0],
             _ => [p; 3],
         };
@@ -34,13 +35,13 @@ impl Net {
     }
 
     /// The net of the derivative of a control net by one axis of the unit cell (pyramid: of the columns that
-    /// [`super::derivative`] explains). A triangle's or quadrilateral's third is a constant.
+    /// [`super::derivative`] explains). Beyond the cell's dimension they are constants.
     #[must_use]
     pub fn derivative(self, axis: usize) -> Net {
         let [p, .., top] = self.degree;
         let degree = match self.cell {
             Cell::Tet => [p - 1; 3],
-            Cell::Triangle | Cell::Quad if axis == 2 => [0; 3],
+            Cell::Line | Cell::Triangle | Cell::Quad if axis >= self.cell.dimension() => [0; 3],
             Cell::Triangle => [p - 1, p - 1, 0],
             Cell::Prism if axis < 2 => [p - 1, p - 1, top],
             Cell::Prism => [p, p, top - 1],
@@ -166,6 +167,7 @@ mod tests {
         assert_eq!(counts(Cell::Pyramid), [9, 86, 280, 645]);
         assert_eq!(counts(Cell::Triangle), [1, 6, 15, 28]);
         assert_eq!(counts(Cell::Quad), [4, 16, 36, 64]);
+        assert_eq!(counts(Cell::Line), [1, 2, 3, 4]);
     }
 
     #[test]
