@@ -18,7 +18,7 @@ SAGITTA := $(TARGET)/release/sagitta
 
 # The steps of a target run in their order, also under -j.
 .NOTPARALLEL:
-.PHONY: help setup setup-build build demo venv test lint unit examples fuzz fuzz-coverage parsers bench oracle table engines picture bench-cases consumers solvers convergence figures reliability gauntlet-3d schema doc
+.PHONY: help setup setup-build build demo venv test lint unit examples fuzz fuzz-coverage parsers bench oracle table engines picture bench-cases consumers solvers convergence figures reliability gauntlet-3d gauntlet-2d schema doc
 
 help: ## this list
 	@echo "sagitta curves linear viscous CFD meshes onto their CAD. Targets:"
@@ -114,6 +114,10 @@ convergence: setup build ## orders of convergence on curved and straight meshes 
 gauntlet-3d: build ## viscous meshes made on every CAD file in SAGITTA_CAD=DIR[:DIR], curved at P2 and P3, beside Gmsh; GAUNTLET_OPTIONS; an hour
 	@WANTED=tests/gauntlet/requirements.txt VENV=.venv-gauntlet PYTHON="$(PYTHON)" .ci/venv
 	.venv-gauntlet/bin/python tests/gauntlet/gauntlet_3d.py $(SAGITTA) "$(SAGITTA_CAD)" $(GAUNTLET_OPTIONS) | tee $(TARGET)/gauntlet_3d.md
+
+gauntlet-2d: build ## viscous plane meshes made round random airfoils, curved at P2 to P4; GAUNTLET_OPTIONS (--count N --seed S --judge); minutes
+	@WANTED=tests/gauntlet/requirements_2d.txt VENV=.venv-gauntlet-2d PYTHON="$(PYTHON)" .ci/venv
+	.venv-gauntlet-2d/bin/python tests/gauntlet/gauntlet_2d.py $(SAGITTA) $(GAUNTLET_OPTIONS) | tee $(TARGET)/gauntlet_2d.md
 
 reliability: build ## kills at random times, full disks, signals in each step: what is left behind; root or `unshare -Urm`; 10 minutes
 	$(PYTHON) tests/reliability/harm.py $(SAGITTA)

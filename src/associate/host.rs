@@ -63,4 +63,18 @@ impl Candidates {
         self.sheets.retain(|sheet| !sheet.items.is_empty());
         self
     }
+
+    /// The way back: as a linkage file says it.
+    pub(super) fn as_written(mut self, boundary: &Boundary) -> Candidates {
+        if boundary.plane.is_some() {
+            let ends = |side: &usize| <[_; 2]>::try_from(&boundary.corners[*side][..]).ok();
+            let string = |Candidate { label, items, entities }: Candidate<usize>| Candidate {
+                label,
+                items: items.iter().filter_map(ends).collect(),
+                entities,
+            };
+            self.strings = std::mem::take(&mut self.sheets).into_iter().map(string).collect();
+        }
+        self
+    }
 }

@@ -31,6 +31,7 @@ mod outputs;
 mod partial;
 mod periodic;
 mod plane;
+mod plane_curve;
 mod project;
 mod real_linkage;
 mod registry;

@@ -17,6 +17,9 @@
 //! 5. Keep this if a level has fallen by a worthwhile fraction, and begin again; else undo it.
 //!
 //! So no level rises, of no surface and no curve. What is gained stands in [`crate::curve::wall`].
+//!
+//! In a plane mesh a line shares only its ends with others, and these stay: each is fitted alone, by Newton's method, its level its own
+//! distance. On a circle the slides that bring a line of P4 nearer are those of two nodes at once; one node after the other gains nothing.
 
 mod measure;
 mod model;
@@ -32,7 +35,7 @@ use crate::curve::level::{Case, Level};
 use crate::element::Cell;
 use crate::mesh::NodeId;
 use measure::{Fit, Part, Piece};
-use model::{Model, Response, Slider, gradients, relax};
+use model::{Model, Response, Slider, gradients, relax, solve};
 use table::Table;
 
 /// Rounds at most.
@@ -47,6 +50,8 @@ const CHOSEN: [usize; 2] = [64, 4096];
 ///
 /// It must lie below what refinement reaches: with 1e-4 the fit ended between two levels, and with it the observed order.
 const NEGLIGIBLE: f64 = 1e-8;
+/// The same for the lines of a plane mesh, which cost nothing.
+const NEGLIGIBLE_LINE: f64 = 1e-12;
 /// Levels of curves that an edge on one is compared with.
 ///
 /// Compared with one, edges slide for their own sake, and wing_sharp at scale 0.4 came out with `C_JAC` 0.76 in place of 0.80. Not
@@ -106,16 +111,24 @@ impl Fit<'_, '_> {
         for own in &models {
             pieces[own.piece].far = own.distances.iter().copied().fold(0.0, f64::max);
         }
-        let levels = self.levels(pieces);
+        let (levels, alone) = (self.levels(pieces), self.level.plane().is_some());
         for (m, own) in models.iter_mut().enumerate() {
             let part = pieces[own.piece].part;
-            let least = NEGLIGIBLE * self.size(part);
+            let least = self.negligible(part);
             let level = levels[&self.key(part)].max(least).max(f64::MIN_POSITIVE);
             own.level = if matches!(part, Part::Face(_)) { level } else { ON_CURVE * level };
             own.room = pieces[own.piece].far.max(ROOM * level);
+            if alone {
+                own.level = pieces[own.piece].far.max(least).max(f64::MIN_POSITIVE);
+                own.room = pieces[own.piece].far;
+            }
             own.sliders.iter().enumerate().for_each(|(r, response)| sliders[response.slider].at.push((m, r)));
         }
-        relax(&mut sliders, &mut models, SWEEPS);
+        if alone {
+            models.iter_mut().for_each(|own| solve(&mut sliders, own, SWEEPS));
+        } else {
+            relax(&mut sliders, &mut models, SWEEPS);
+        }
         let allowed: Vec<f64> = models.par_iter().map(|own| self.allowed(own, pieces[own.piece].part)).collect();
         let size = |slider: &Slider| self.level.wall.size(slider.node.index()).unwrap_or(0.0);
         let share = |slider: &Slider| {
@@ -131,7 +144,8 @@ impl Fit<'_, '_> {
         let mut after = pieces.to_vec();
         models.iter().zip(far).for_each(|(own, far)| after[own.piece].far = far);
         let fallen = self.levels(&after);
-        let worth = levels.iter().any(|(key, level)| fallen[key] < GAIN * level);
+        let nearer = |own: &Model| after[own.piece].far < GAIN * pieces[own.piece].far;
+        let worth = levels.iter().any(|(key, level)| fallen[key] < GAIN * level) || (alone && models.iter().any(nearer));
         if worth {
             pieces.copy_from_slice(&after);
         } else {
@@ -143,19 +157,29 @@ impl Fit<'_, '_> {
     /// The nodes of the farthest pieces that may slide.
     fn sliding(&self, pieces: &[Piece]) -> Vec<NodeId> {
         let levels = self.levels(pieces);
+        let alone = self.level.plane().is_some();
         let ratio = |piece: &Piece| piece.far / levels[&self.key(piece.part)];
         let far = |piece: &&Piece| {
-            matches!(piece.part, Part::Face(_)) && ratio(piece) > FAR && piece.far > NEGLIGIBLE * self.size(piece.part)
+            matches!(piece.part, Part::Face(_))
+                && (alone || ratio(piece) > FAR)
+                && piece.far > self.negligible(piece.part)
         };
         let mut chosen: Vec<&Piece> = pieces.iter().filter(far).collect();
         chosen.sort_by(|a, b| ratio(b).total_cmp(&ratio(a))); // stable: in file order where they are equal
         let [least, most] = CHOSEN;
-        chosen.truncate((pieces.len() / FEW).clamp(least, most));
+        if !alone {
+            chosen.truncate((pieces.len() / FEW).clamp(least, most));
+        }
         let rims = chosen.iter().flat_map(|piece| self.rim(piece.part));
         let mut sliding: Vec<NodeId> = rims.filter(|&n| self.slides(n)).collect();
         sliding.sort_unstable();
         sliding.dedup();
         sliding
+    }
+
+    /// Distances of a part that are not worth a slide.
+    fn negligible(&self, part: Part) -> f64 {
+        self.size(part) * if self.level.plane().is_some() { NEGLIGIBLE_LINE } else { NEGLIGIBLE }
     }
 
     fn slider(&self, node: NodeId) -> Slider {

@@ -15,6 +15,11 @@ const POWER: i32 = 8;
 /// With 2 the weeble's wall comes out 1.10e-3 off the CAD, with 3 1.24e-3; wing_sharp at scale 0.4 with `C_JAC` 0.793 and 0.797.
 const STIFFNESS: f64 = 3.0;
 
+/// A step shorter than this share of Newton's is not tried.
+const LEAST_STEP: f64 = 1e-6;
+/// A step that gains less than this share is the last.
+const CONVERGED: f64 = 1e-6;
+
 /// A node that may slide along its curve or surface.
 pub(super) struct Slider {
     pub(super) node: NodeId,
@@ -81,6 +86,55 @@ pub(super) fn relax(sliders: &mut [Slider], models: &mut [Model], sweeps: usize)
     }
 }
 
+/// Lets the nodes of a line that no other line shares slide to the minimum of the same, by at most so many steps of Newton's method.
+pub(super) fn solve(sliders: &mut [Slider], own: &mut Model, steps: usize) {
+    let sliding: Vec<usize> =
+        (0..own.sliders.len()).filter(|&r| sliders[own.sliders[r].slider].along.len() == 1).collect();
+    let tangents: Vec<DVec3> = sliding.iter().map(|&r| sliders[own.sliders[r].slider].along[0]).collect();
+    let mut value = own.value();
+    for _ in 0..steps {
+        let (gradient, hessian) = own.derivatives(&sliding, &tangents);
+        let Some(step) = solved(hessian, gradient) else { break };
+        let mut share = -1.0;
+        own.slide(&sliding, &tangents, &step, share);
+        let after = loop {
+            let after = own.value();
+            if after < value || share.abs() < LEAST_STEP {
+                break after;
+            }
+            own.slide(&sliding, &tangents, &step, -0.5 * share);
+            share *= 0.5;
+        };
+        for ((&r, tangent), own_step) in sliding.iter().zip(&tangents).zip(&step) {
+            sliders[own.sliders[r].slider].step += *tangent * (own_step * share);
+        }
+        if value - after < CONVERGED * value {
+            break;
+        }
+        value = after;
+    }
+}
+
+/// Solves a small symmetric positive definite system by Gauss's elimination; `None` where it is singular.
+fn solved(mut matrix: Vec<Vec<f64>>, mut side: Vec<f64>) -> Option<Vec<f64>> {
+    let n = side.len();
+    for pivot in 0..n {
+        let diagonal = matrix[pivot][pivot];
+        if diagonal <= 0.0 || !diagonal.is_finite() {
+            return None;
+        }
+        for row in (0..n).filter(|&row| row != pivot) {
+            let factor = matrix[row][pivot] / diagonal;
+            for column in pivot..n {
+                let entry = matrix[pivot][column];
+                matrix[row][column] -= factor * entry;
+            }
+            side[row] -= factor * side[pivot];
+        }
+    }
+    Some((0..n).map(|row| side[row] / matrix[row][row]).collect())
+}
+
 /// Newton's step of one node, along its tangents.
 fn newton(slider: &Slider, models: &[Model]) -> [f64; 2] {
     let ways = slider.along.len();
@@ -118,6 +172,54 @@ fn newton(slider: &Slider, models: &[Model]) -> [f64; 2] {
 }
 
 impl Model {
+    /// What is minimised, of a line.
+    fn value(&self) -> f64 {
+        let count = self.distances.len().max(1) as f64;
+        let far: f64 = self.distances.iter().map(|d| (d / self.level).powi(POWER)).sum();
+        let mut strain = 0.0;
+        for (u, row) in self.shifts.iter().zip(&self.products) {
+            strain += self.shifts.iter().zip(row).map(|(v, k)| u.dot(*v) * k).sum::<f64>();
+        }
+        far / count + STIFFNESS * strain
+    }
+
+    /// Its derivatives by the slides of some of its nodes along their tangents.
+    fn derivatives(&self, sliding: &[usize], tangents: &[DVec3]) -> (Vec<f64>, Vec<Vec<f64>>) {
+        let n = sliding.len();
+        let (mut g, mut h) = (vec![0.0; n], vec![vec![0.0; n]; n]);
+        let power = f64::from(POWER);
+        let share = power / self.distances.len().max(1) as f64;
+        for (s, d) in self.distances.iter().enumerate() {
+            let q = d / self.level;
+            let weight = share * q.powi(POWER - 2);
+            let slope = |a: usize| self.sliders[sliding[a]].slopes[0][s] / self.level;
+            for a in 0..n {
+                g[a] += weight * q * slope(a);
+                for b in 0..n {
+                    h[a][b] += (power - 1.0) * weight * slope(a) * slope(b);
+                }
+            }
+        }
+        for a in 0..n {
+            let own = &self.products[self.sliders[sliding[a]].rim];
+            let pull: DVec3 = self.shifts.iter().zip(own).map(|(u, k)| *u * *k).sum();
+            g[a] += 2.0 * STIFFNESS * pull.dot(tangents[a]);
+            for b in 0..n {
+                h[a][b] += 2.0 * STIFFNESS * own[self.sliders[sliding[b]].rim] * tangents[a].dot(tangents[b]);
+            }
+        }
+        (g, h)
+    }
+
+    /// Slides some of its nodes along their tangents by a share of a step.
+    fn slide(&mut self, sliding: &[usize], tangents: &[DVec3], step: &[f64], share: f64) {
+        for ((&r, tangent), step) in sliding.iter().zip(tangents).zip(step) {
+            let Response { rim, ref slopes, .. } = self.sliders[r];
+            self.shifts[rim] += *tangent * (step * share);
+            self.distances.iter_mut().zip(&slopes[0]).for_each(|(d, slope)| *d += slope * step * share);
+        }
+    }
+
     /// Largest strain `|grad u|` where the rim has slid from `before` by a fraction of its way.
     pub(super) fn strain(&self, before: &[DVec3], share: f64) -> f64 {
         let shifts: Vec<DVec3> = before.iter().zip(&self.shifts).map(|(a, b)| a.lerp(*b, share)).collect();
