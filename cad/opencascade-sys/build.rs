@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 const INCLUDE_DIRS: [&str; 3] =
     ["/usr/include/opencascade", "/usr/local/include/opencascade", "/opt/include/opencascade"];
-const SHIM: [&str; 6] = ["geometry", "shape", "instances", "import", "oracle", "place"];
+const SHIM: [&str; 7] = ["geometry", "shape", "instances", "import", "oracle", "place", "airfoil"];
 
 fn main() {
     println!("cargo:rerun-if-env-changed=OCCT_INCLUDE_DIR");

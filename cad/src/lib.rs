@@ -5,6 +5,7 @@
 //! * [`Group`] is a set of faces, edges and vertices; [`Group::closest`] gives the [`Foot`] of a point on it, trims respected, and says
 //!   whether it is proven to be the closest point; [`Group::closest_batch`] does so for many, in parallel.
 //! * [`Model::evaluate`] gives derivatives, normals and curvatures; [`Model::resolve`] turns references of linkage files into entities.
+//! * [`Airfoil`] makes CAD of an airfoil's coordinates.
 //! * [`BoxTree`] is the tree of boxes that the search uses, for other uses too.
 //!
 //! The search runs on plain arrays (closed forms, Bezier spans with their control hulls, OCCT's own parameters); the answer is
@@ -12,6 +13,8 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(feature = "occt"), allow(dead_code))] // of the box tree, what only the search uses
 
+#[cfg(feature = "occt")]
+mod airfoil;
 mod boxes;
 pub mod child;
 #[cfg(feature = "occt")]
@@ -34,6 +37,7 @@ pub use unit::unit_factor;
 
 #[cfg(feature = "occt")]
 pub use {
+    airfoil::{Airfoil, AirfoilError},
     closest::foot::{Doubt, End, Foot},
     closest::group::{Group, GroupError},
     closest::hint::Hint,

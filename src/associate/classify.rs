@@ -9,8 +9,8 @@ use super::host::{is_host, kind_of};
 use super::side::SMOOTH;
 use super::witnesses::{combined, completed};
 use super::{
-    AssociateError, Association, Candidates, Doubt, Inference, Linkage, LinkageError, ON_CAD, Tolerance, associate, infer,
-    linked, sides,
+    AssociateError, Association, Candidates, Doubt, Inference, Linkage, LinkageError, ON_CAD, Tolerance, associate,
+    infer, linked, sides,
 };
 use crate::mesh::{Boundary, EntityKey, Mesh};
 
@@ -261,7 +261,8 @@ impl Classifier<'_> {
     fn has_own_shape(&self, candidates: &Candidates) -> bool {
         let is_own = |entity: &EntityId| {
             let kind = kind_of(self.model, *entity).filter(|_| is_host(self.boundary, *entity));
-            let common = |kind| matches!(kind, Kind::Plane | Kind::Cone | Kind::Cylinder | Kind::Extrusion | Kind::Line);
+            let common =
+                |kind| matches!(kind, Kind::Plane | Kind::Cone | Kind::Cylinder | Kind::Extrusion | Kind::Line);
             kind.is_some_and(|kind| !common(kind))
         };
         let own = candidates.sheets.iter().filter(|sheet| sheet.entities.iter().any(is_own));

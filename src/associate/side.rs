@@ -24,7 +24,7 @@ pub struct Side {
 /// The sides of all boundary faces.
 #[must_use]
 pub fn sides(mesh: &Mesh, boundary: &Boundary) -> Vec<Side> {
-    let mut sides: Vec<Side> = 
+    let mut sides: Vec<Side> =
         boundary.corners.iter().map(|corners| by_corners(mesh, corners, boundary.plane)).collect();
     for cell in mesh.cells().iter() {
         for key in cell.sides() {

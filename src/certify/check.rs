@@ -32,5 +32,9 @@ pub fn check(
         return Err(NotCertifiable::NoCells);
     };
     let certificate = certificate::mesh(mesh, positions, linear_corners, settings);
-    if block.cell.has_jacobian(certificate.normal.iter().count()) { Ok(certificate) } else { Err(NotCertifiable::NotPlane) }
+    if block.cell.has_jacobian(certificate.normal.iter().count()) {
+        Ok(certificate)
+    } else {
+        Err(NotCertifiable::NotPlane)
+    }
 }

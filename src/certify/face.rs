@@ -194,7 +194,8 @@ mod tests {
         for order in Order::all().filter(|order| order.get() >= 3) {
             let line = |back: f64| {
                 let at = |s: f64| placed(DVec3::new(s - back * (s * (1.0 - s) * (1.0 - 2.0 * s)), 0.3 * s * s, 0.0));
-                let points = lattice(Cell::Line, order).iter().map(|n| at(f64::from(n[0]) / order.get() as f64)).collect();
+                let points =
+                    lattice(Cell::Line, order).iter().map(|n| at(f64::from(n[0]) / order.get() as f64)).collect();
                 let plane = Some((placed(DVec3::Z) - placed(DVec3::ZERO)).normalize());
                 verdict(&WallFace { cell: Cell::Line, order, points, corners: vec![at(0.0), at(1.0)], plane })
             };

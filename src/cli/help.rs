@@ -53,6 +53,13 @@ pub(super) fn convert() -> String {
 }
 
 #[cfg(feature = "cad")]
+pub(super) fn spline() -> String {
+    let examples = "
+  sagitta spline fixtures/airfoils/naca2412.dat -o naca2412.step";
+    below(examples, &[DONE, COULD_NOT_RUN, SIDE_FILE])
+}
+
+#[cfg(feature = "cad")]
 pub(super) fn link() -> String {
     let examples = "
   sagitta link fixtures/weeble/weeble.msh --cad fixtures/weeble/weeble.step \\

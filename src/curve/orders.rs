@@ -204,15 +204,20 @@ pub(super) fn projected<'a>(case: Case<'a>, linear: &Mesh, order: Order) -> Resu
     Ok(level)
 }
 
-/// Projects the wall, carries periodic images along, fits the wall to the CAD, and lets the faces beside it follow; what there is to say of
-/// these.
+/// Projects the wall, fits it to the CAD, carries periodic images along, and lets the faces beside it follow; what there is to say of these.
 fn put_on_cad(level: &mut Level) -> Vec<String> {
     project(level);
+    carry(level);
+    fit(level);
+    carry(level);
+    follow_rims(level)
+}
+
+/// Takes the nodes that follow others to their images.
+fn carry(level: &mut Level) {
     let mut displacement = level.wall.displacements();
     level.periodic.carry(level.elevated.mesh.points(), &mut displacement);
     level.wall.displace_all(&displacement);
-    fit(level);
-    follow_rims(level)
 }
 
 /// Takes a level that is inverted through recovery; whether it came out proven, and on the CAD but for released nodes.

@@ -8,7 +8,8 @@ use rayon::prelude::*;
 use super::certificate::CertificateReport;
 use super::curve::{
     Angles, CellReport, Costs, GridLinesReport, Input, LowerOrderReport, Nodes, OffCadReport, OpenFaceReport,
-    PatchReport, PlaneReport, Projections, Report, SCHEMA, SmoothingReport, StepReport, WallFailure, WallReport, WallVerdict,
+    PatchReport, PlaneReport, Projections, Report, SCHEMA, SmoothingReport, StepReport, WallFailure, WallReport,
+    WallVerdict,
 };
 use super::finite;
 use crate::associate::{Classification, OpenFace};

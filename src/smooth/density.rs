@@ -198,7 +198,12 @@ mod tests {
         let upright = DMat3::from_cols_array(&[1.1, 0.2, -0.1, 0.3, 0.8, 0.2, -0.2, 0.1, 0.9]);
         let inverted = DMat3::from_cols_array(&[1.1, 0.2, -0.1, 0.3, 0.8, 0.2, -0.2, 0.1, -0.4]);
         let plane = |m: [f64; 4]| DMat3::from_cols_array(&[m[0], m[1], 0.0, m[2], m[3], 0.0, 0.0, 0.0, 1.0]);
-        let matrices = [(upright, false), (inverted, false), (plane([1.1, 0.2, 0.3, 0.8]), true), (plane([1.1, 0.2, 0.3, -0.8]), true)];
+        let matrices = [
+            (upright, false),
+            (inverted, false),
+            (plane([1.1, 0.2, 0.3, 0.8]), true),
+            (plane([1.1, 0.2, 0.3, -0.8]), true),
+        ];
         for density in DENSITIES {
             for (t, flat) in matrices {
                 let in_plane = |v: DVec3| if flat { v.with_z(0.0) } else { v };

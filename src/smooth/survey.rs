@@ -182,7 +182,8 @@ impl WithSimd for Look<'_> {
             jc[block] = if fixed && block > 0 {
                 jc[0]
             } else {
-                let frame = frame(simd, survey.up, &linear[chunk * survey.corners * 3 * parts..], (parts, part), corners);
+                let frame =
+                    frame(simd, survey.up, &linear[chunk * survey.corners * 3 * parts..], (parts, part), corners);
                 determinant(simd, &frame, &cofactors_of(simd, &frame))
             };
             let frame = frame(simd, survey.up, &curved[chunk * survey.nodes * 3 * parts..], (parts, part), points);

@@ -93,8 +93,7 @@ fn an_airfoil_with_layers_is_curved_and_judged() {
 /// The IGES file has the curves alone, in another order, and the SU2 file markers that are no numbers of CAD edges.
 #[test]
 fn curves_without_faces_and_meshes_without_tags_are_associated_by_geometry() {
-    let [msh, su2, step, iges] =
-        ["msh", "su2", "step", "igs"].map(|extension| fixture("naca0012_sharp", extension));
+    let [msh, su2, step, iges] = ["msh", "su2", "step", "igs"].map(|extension| fixture("naca0012_sharp", extension));
     let by_tags = curved(&msh, &step, 3, &[]).mesh();
     for (linear, cad) in [(&su2, &step), (&msh, &iges), (&su2, &iges)] {
         let own = curved(linear, cad, 3, &[]);

@@ -110,6 +110,7 @@ mod ffi {
     }
 
     unsafe extern "C++" {
+        include!("airfoil.hxx");
         include!("import.hxx");
         include!("oracle.hxx");
         include!("place.hxx");
@@ -167,6 +168,10 @@ mod ffi {
         /// What OCCT's checks say of entities.
         fn warnings(self: &Import) -> Vec<String>;
 
+        /// The C2 spline through points (x, y one after the other) from one end of the trailing edge round the nose, which has the given
+        /// number, to the other end, and where the ends differ a straight base between them; as STEP. Turns OCCT's own messages off.
+        fn write_airfoil(path: &str, points: &[f64], nose: usize) -> Result<()>;
+
         /// OCCT's own searches on a face, for tests and benchmarks: `found` is u, v, distance; the point of `extrema`.
         fn oracle(shape: &Shape, face: usize) -> Result<UniquePtr<Oracle>>;
         fn project(self: Pin<&mut Oracle>, x: f64, y: f64, z: f64, found: &mut [f64; 3]) -> Result<bool>;
@@ -179,7 +184,7 @@ mod ffi {
 pub use cxx::{Exception, UniquePtr};
 pub use ffi::{
     Coedge, Curve, EdgeData, FaceData, Form, Format, Import, Kind, Label, Loops, Oracle, Pcurve, Shape, Spans, Surface,
-    VertexData, oracle, read_file, shape_from_bytes, stand_at, tell_crashes,
+    VertexData, oracle, read_file, shape_from_bytes, stand_at, tell_crashes, write_airfoil,
 };
 
 // SAFETY (the three types below): each holds one `Handle(Geom_*)` or `Handle(Geom2d_*)` that is never replaced or edited after

@@ -165,8 +165,10 @@ impl Sides<'_> {
     }
 
     fn inference(&self, candidates: Vec<Vec<EdgeCandidate>>) -> Inference {
-        let spans: BTreeMap<usize, Vec<EdgeId>> =
-            (0..candidates.len()).filter(|&s| candidates[s].is_empty()).filter_map(|s| Some((s, self.smooth_pair(s)?))).collect();
+        let spans: BTreeMap<usize, Vec<EdgeId>> = (0..candidates.len())
+            .filter(|&s| candidates[s].is_empty())
+            .filter_map(|s| Some((s, self.smooth_pair(s)?)))
+            .collect();
         let mut joined = JoinedEdges::default();
         spans.values().for_each(|pair| joined.join(pair));
         let mut sheets: BTreeMap<(EntityKey, Vec<EdgeId>), Vec<usize>> = BTreeMap::new();

@@ -8,6 +8,7 @@ mod points;
 mod progress;
 mod project;
 mod reading;
+mod spline;
 mod validate;
 mod values;
 
@@ -38,6 +39,9 @@ pub(super) enum Command {
     /// Project points onto CAD: the closest point of a set of faces and edges, and whether it is proven
     #[command(after_help = help::project())]
     Project(project::Options),
+    /// Make CAD of an airfoil's coordinates: the C2 spline through them, with a corner at the trailing edge only
+    #[command(after_help = help::spline())]
+    Spline(spline::Options),
 }
 
 impl Command {
@@ -59,5 +63,6 @@ pub(super) fn run(command: &Command) -> Result<u8, Failure> {
         Command::Validate(options) => validate::run(options),
         Command::Groups(options) => groups::run(options),
         Command::Project(options) => project::run(options),
+        Command::Spline(options) => spline::run(options),
     }
 }

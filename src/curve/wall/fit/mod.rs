@@ -79,12 +79,19 @@ const UNMOVED: f64 = 1e-6;
 /// Distances below this fraction of a face's edge have no direction.
 const NO_DIRECTION: f64 = 1e-9;
 
-/// Lets nodes of wall edges slide where that takes the wall nearer to the CAD; nodes of periodic pairs stay.
+/// Lets nodes of wall edges slide where that takes the wall nearer to the CAD; nodes of periodic pairs stay. In a plane mesh those that lead
+/// slide, and those that follow are to be carried along.
 pub fn fit(level: &mut Level) {
     let tables =
         [Cell::Line, Cell::Triangle, Cell::Quad].map(|cell| (cell, Table::new(cell, level.elevated.mesh.order())));
     let start = level.wall.displacements();
-    let paired = level.periodic.images().iter().flat_map(|image| [image.node, image.of]).collect();
+    let leads = level.plane().is_some();
+    let paired = level
+        .periodic
+        .images()
+        .iter()
+        .flat_map(|image| [image.node, if leads { image.node } else { image.of }])
+        .collect();
     let mut fit = Fit { level, paired, start, tables: tables.into_iter().collect() };
     let mut pieces = fit.pieces();
     for _ in 0..ROUNDS {
@@ -145,7 +152,8 @@ impl Fit<'_, '_> {
         models.iter().zip(far).for_each(|(own, far)| after[own.piece].far = far);
         let fallen = self.levels(&after);
         let nearer = |own: &Model| after[own.piece].far < GAIN * pieces[own.piece].far;
-        let worth = levels.iter().any(|(key, level)| fallen[key] < GAIN * level) || (alone && models.iter().any(nearer));
+        let worth =
+            levels.iter().any(|(key, level)| fallen[key] < GAIN * level) || (alone && models.iter().any(nearer));
         if worth {
             pieces.copy_from_slice(&after);
         } else {
@@ -236,7 +244,8 @@ impl Fit<'_, '_> {
         let sliders = responses.collect();
         let corners: Vec<DVec3> = nodes[..table.straight[0].len()].iter().map(|&n| self.straight(n)).collect();
         let slopes = table.slopes.iter().zip(&table.straight);
-        let slopes: Vec<Vec<DVec3>> = slopes.map(|(slopes, straight)| gradients(slopes, straight, &corners, plane.is_some())).collect();
+        let slopes: Vec<Vec<DVec3>> =
+            slopes.map(|(slopes, straight)| gradients(slopes, straight, &corners, plane.is_some())).collect();
         let mean = |r: usize, q: usize| slopes.iter().map(|s| s[r].dot(s[q])).sum::<f64>() / slopes.len() as f64;
         let products = (0..rim.len()).map(|r| (0..rim.len()).map(|q| mean(r, q)).collect()).collect();
         let distances = feet.iter().map(|(_, foot)| foot.map_or(f64::INFINITY, |foot| foot.distance)).collect();

@@ -235,12 +235,7 @@ impl Model {
 /// in a line.
 ///
 /// `straight` are the slopes of the corners' linear functions.
-pub(super) fn gradients(
-    slopes: &[[f64; 2]],
-    straight: &[[f64; 2]],
-    corners: &[DVec3],
-    lines: bool,
-) -> Vec<DVec3> {
+pub(super) fn gradients(slopes: &[[f64; 2]], straight: &[[f64; 2]], corners: &[DVec3], lines: bool) -> Vec<DVec3> {
     let axis = |a: usize| -> DVec3 { corners.iter().zip(straight).map(|(x, s)| *x * s[a]).sum() };
     let (a, b) = (axis(0), axis(1));
     let (aa, ab, bb) = (a.dot(a), a.dot(b), b.dot(b));
