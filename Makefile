@@ -83,6 +83,7 @@ parsers: setup-build ## sagitta's readers beside strict parsers of other code, o
 
 bench: build ## benchmarks; minutes, not a test
 	cargo bench --bench curve
+	cargo bench --bench plane
 	cargo bench --bench formats
 	cargo bench -p sagitta-cad --bench projection
 

@@ -7,7 +7,7 @@
 use std::ffi::OsString;
 use std::path::Path;
 
-use crate::common::{fixture, json, number, python, sagitta, script, warn};
+use crate::common::{fixture, json, number, python, root, sagitta, script, warn};
 use glam::DVec3;
 use sagitta::element::{Cell, Order, basis};
 use sagitta::formats::{self, WriteOptions};
@@ -115,6 +115,34 @@ fn a_linkage_file_that_was_written_for_a_plane_mesh_curves_it() {
     let own = curved(&linear, &cad, 2, &args!["--linkage", linkage]);
     let by_tags = curved(&linear, &cad, 2, &[]);
     assert_eq!(own.mesh().points(), by_tags.mesh().points());
+}
+
+/// The curves go through every point of the file, and a mesh beside them would be curved onto them.
+#[test]
+fn coordinates_become_curves() {
+    let dir = tempfile::tempdir().unwrap();
+    let [step, points, feet] = ["airfoil.step", "points.csv", "feet.csv"].map(|name| dir.path().join(name));
+    let coordinates = root().join("fixtures/airfoils/naca2412.dat");
+    let told = sagitta(args!["spline", coordinates, "-o", step]).expect(0).stdout;
+    assert!(told.contains("81 points, blunt trailing edge"), "{told}");
+    let rows: Vec<String> = std::fs::read_to_string(&coordinates)
+        .unwrap()
+        .lines()
+        .skip(1)
+        .map(|row| row.replace(' ', ",") + ",0")
+        .collect();
+    std::fs::write(&points, format!("x,y,z\n{}\n", rows.join("\n"))).unwrap();
+    sagitta(args!["project", step, points, "-o", feet, "-q"]).expect(0);
+    let far = std::fs::read_to_string(&feet).unwrap();
+    let column = far.lines().next().unwrap().split(',').position(|name| name == "distance").expect("a distance");
+    for line in far.lines().skip(1) {
+        let distance: f64 = line.split(',').nth(column).unwrap().parse().unwrap();
+        assert!(distance < 1e-9, "{line}");
+    }
+    let none = dir.path().join("none.dat");
+    std::fs::write(&none, "nothing\n1 2\n").unwrap();
+    let refused = sagitta(args!["spline", none, "-o", dir.path().join("none.step")]).expect(2).stderr;
+    assert!(refused.contains("none.dat: has 1 points that differ"), "{refused}");
 }
 
 /// The blade's passage is one pitch wide; what goes out above comes in below.

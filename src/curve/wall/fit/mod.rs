@@ -219,7 +219,13 @@ impl Fit<'_, '_> {
             Some(_) => group.and_then(|group| normal_of(group, &group.closest(x, None)?, plane)),
         };
         let feet = self.feet(part, &table.fine);
+        // A foot may be off along the curve by more than the point is off the curve: its normal is the better direction.
+        let of_line = |x: DVec3, foot: &Foot| {
+            let own = normal_of(group?, foot, Some(plane?))?;
+            Some(if own.dot(x - foot.point) < 0.0 { -own } else { own })
+        };
         let away = |(x, foot): &(DVec3, Option<Foot>)| match foot {
+            Some(foot) if plane.is_some() => of_line(*x, foot).unwrap_or(DVec3::ZERO),
             Some(foot) if foot.distance > off => (*x - foot.point) / foot.distance,
             _ => normal(*x).unwrap_or(DVec3::ZERO),
         };
