@@ -65,7 +65,7 @@ impl Candidates {
     }
 
     /// The way back: as a linkage file says it.
-    pub(super) fn as_written(mut self, boundary: &Boundary) -> Candidates {
+    pub(super) fn into_written(mut self, boundary: &Boundary) -> Candidates {
         if boundary.plane.is_some() {
             let ends = |side: &usize| <[_; 2]>::try_from(&boundary.corners[*side][..]).ok();
             let string = |Candidate { label, items, entities }: Candidate<usize>| Candidate {

@@ -215,7 +215,7 @@ fn lines_come_to_the_circle_with_the_order_that_is_promised() {
             off_the_circle(&own.mesh(), radii[0])
         });
         let rates = [0, 1].map(|k| (distances[k] / distances[k + 1]).log2());
-        warn(&format!("ring at P{p}: {distances:.2e?} off, orders {rates:.2?}"));
-        assert!(rates[1] >= p as f64 + 0.8, "P{p}: {distances:.2e?}, orders {rates:.2?}");
+        warn(&format!("ring at P{p}: {distances:?} off, orders {rates:.2?}"));
+        assert!(rates[1] >= p as f64 + 0.8, "P{p}: {distances:?}, orders {rates:.2?}");
     }
 }

@@ -44,7 +44,7 @@ pub fn document(
     model: &Model,
     mesh_file: &Path,
 ) -> Result<Written, TooLarge> {
-    let candidates = &candidates.clone().as_written(boundary);
+    let candidates = &candidates.clone().into_written(boundary);
     let numbering = Numbering::new(mesh);
     let ids = Ids::new(candidates, mesh, boundary);
     let models = Models::new(candidates, mesh, boundary, &numbering, &ids)?;
