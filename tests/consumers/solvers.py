@@ -46,7 +46,7 @@ def consume(sagitta, dolfinx, case, order, folder, results):
         path = os.path.join(folder, f"{solver}.{ending}")
         done = run(sagitta, "convert", curved, "--for", solver, "-o", path, codes=(0, 2))
         if done.returncode == 2:
-            verdict = ("not taken", done.stderr.split("cannot be written: ")[-1].split(";")[0].strip())
+            verdict = ("not taken", done.stderr.split("cannot be written: ")[-1].split(";")[0].split(" (the mesh")[0].strip())
         else:
             python = dolfinx if solver == "dolfinx" else sys.executable
             verdict = judge(python, solver, path, expected, order)
