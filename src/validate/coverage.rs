@@ -45,6 +45,9 @@ pub(super) fn check(linked: &LinkedMesh<'_>, models: &[&ModelLinks<'_>], finding
             }
         }
     }
+    if linked.boundary.plane.is_some() {
+        strings(linked, models, &mut states);
+    }
     let mut patches: BTreeMap<EntityKey, (Coverage, Option<Origin>)> = BTreeMap::new();
     for (index, face) in linked.boundary.faces.iter().enumerate() {
         let (patch, place) = patches.entry(face.entity).or_insert_with(|| {
@@ -68,4 +71,18 @@ pub(super) fn check(linked: &LinkedMesh<'_>, models: &[&ModelLinks<'_>], finding
         }
     }
     patches.into_values().map(|(patch, _)| patch).collect()
+}
+
+/// The sides of a plane mesh are linked by strings.
+fn strings(linked: &LinkedMesh<'_>, models: &[&ModelLinks<'_>], states: &mut FxHashMap<usize, (bool, Origin)>) {
+    for (links, string) in models.iter().flat_map(|links| links.strings.iter().map(move |string| (links, string))) {
+        let linked = linked.within(links.model);
+        for link in &string.edges {
+            for edge in link.run.edges().filter_map(|ends| linked.edge(ends)) {
+                for &side in &linked.boundary.edge_faces[edge] {
+                    states.entry(side).or_insert((false, link.run.origin)).0 |= link.target.is_some();
+                }
+            }
+        }
+    }
 }

@@ -119,7 +119,7 @@ fn edges(linked: &LinkedMesh<'_>, string: &StringLinks<'_>, faces: &FxHashSet<us
             );
         }
     }
-    if bounding < all {
+    if bounding < all && linked.boundary.plane.is_none() {
         findings.push(Code::StringWithoutSheet, string.string.origin, || {
             format!("{} of the {all} edges of {who} are edges of no linked face", all - bounding)
         });
