@@ -206,17 +206,20 @@ fn off_the_circle(mesh: &Mesh, radius: f64) -> f64 {
 fn lines_come_to_the_circle_with_the_order_that_is_promised() {
     let dir = tempfile::tempdir().unwrap();
     let radii = [1.0, 2.0];
-    for p in [2, 3, 4] {
+    for p in [2_i32, 3, 4] {
         let levels = [12, 24, 48];
         let distances = levels.map(|n| {
             let linear = dir.path().join(format!("ring{n}.msh"));
             formats::write(&linear, &ring(n, radii), &WriteOptions::default()).unwrap();
-            let own = curved(&linear, &fixture("annulus", "step"), p, &[]);
-            assert_eq!(own.mesh().order(), Order::new(p).unwrap());
+            let own = curved(&linear, &fixture("annulus", "step"), p as usize, &[]);
+            assert_eq!(own.mesh().order(), Order::new(p as usize).unwrap());
             off_the_circle(&own.mesh(), radii[0])
         });
         let rates = [0, 1].map(|k| (distances[k] / distances[k + 1]).log2());
         warn(&format!("ring at P{p}: {distances:?} off, orders {rates:.2?}"));
-        assert!(rates[1] >= p as f64 + 0.8, "P{p}: {distances:?}, orders {rates:.2?}");
+        // On a circle the fit takes the leading terms away, down to what it does not slide for: then the distance is next to nothing.
+        let nothing = 1e-5 * (std::f64::consts::TAU / levels[2] as f64).powi(p + 1);
+        let reached = rates[1] >= f64::from(p) + 0.8 || distances[2] < nothing;
+        assert!(reached, "P{p}: {distances:?}, orders {rates:.2?}");
     }
 }
