@@ -32,7 +32,7 @@ pub(super) fn curve() -> String {
   sagitta curve fixtures/weeble/weeble.msh --cad fixtures/weeble/weeble.step \\
       --linkage fixtures/weeble/weeble.meshlink.xml --order 2 \\
       -o weeble_p2.vtu --report weeble_p2.json
-  sagitta curve fixtures/naca0012_sharp/naca0012_sharp.msh \
+  sagitta curve fixtures/naca0012_sharp/naca0012_sharp.msh \\
       --cad fixtures/naca0012_sharp/naca0012_sharp.step --order 3 -o naca_p3.msh";
     below(examples, &[DONE, COULD_NOT_RUN, OFF_CAD, NOT_CERTIFIED, STOPPED, SIDE_FILE])
 }

@@ -160,10 +160,10 @@ pub fn write(path: &Path, mesh: &Mesh, options: &WriteOptions<'_>) -> Result<Vec
     write_as(format_of(path, None)?, path, &mesh.without_unmarked(), options)
 }
 
-/// Writes a mesh file as a solver takes it; the format is one of the solver's, by the name's ending. Otherwise as [`write`].
+/// Writes a mesh file as a solver takes it; the format is one of the solver's, by the name's ending. Otherwise as [`write()`].
 ///
 /// # Errors
-/// Those of [`write`] and of [`check_solver`].
+/// Those of [`write()`] and of [`check_solver`].
 pub fn write_for(path: &Path, mesh: &Mesh, solver: &Solver, options: &WriteOptions<'_>) -> Result<Vec<String>, Error> {
     check_solver(path, solver, mesh, mesh.order())?;
     let refused = |reason| Error::Inexpressible { file: path.to_path_buf(), reason };

@@ -168,8 +168,11 @@ fn a_face_that_leans_as_far_as_its_wall_does_not_fold() {
     let unit = |order: Order| {
         lattice(Cell::Triangle, order).iter().map(move |at| DVec3::from(at.map(f64::from)) / order.get() as f64)
     };
-    let mut parts = Parts { points: unit(Order::LINEAR).map(place).collect(), ..Parts::default() };
+    let mut points: Vec<DVec3> = unit(Order::LINEAR).map(place).collect();
+    points.push(DVec3::new(0.0, 0.0, 0.3)); // a cell behind it: a triangle alone is a plane mesh
+    let mut parts = Parts { points, ..Parts::default() };
     parts.push(Cell::Triangle, EntityKey::new(2, 1), &[0, 1, 2].map(|n| NodeId::new(n).unwrap()));
+    parts.push(Cell::Tet, EntityKey::new(3, 1), &[0, 1, 2, 3].map(|n| NodeId::new(n).unwrap()));
     let linear = Mesh::new(parts).unwrap();
     let walls = |surfaces| {
         let given = Given::new(&linear, order.get(), surfaces);

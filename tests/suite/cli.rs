@@ -67,7 +67,9 @@ fn run(commands: &[String], dir: &Path) -> String {
     for command in commands {
         let command = command.split('#').next().unwrap();
         let place = |word: &str| -> OsString {
-            let made = [".msh", ".cgns", ".vtu", ".json", ".csv", ".xml"].iter().any(|end| word.ends_with(end))
+            let made = [".msh", ".mesh", ".su2", ".h5", ".cgns", ".vtu", ".json", ".csv", ".xml", ".step"]
+                .iter()
+                .any(|end| word.ends_with(end))
                 && !root().join(word).exists();
             if made { dir.join(Path::new(word).file_name().unwrap()).into() } else { word.into() }
         };

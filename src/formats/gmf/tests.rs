@@ -104,7 +104,7 @@ fn all_versions_and_both_byte_orders_are_one_mesh() {
         "reference 0 is none"
     );
     assert_eq!(first.points()[3], DVec3::new(0.0, 0.0, 0.5));
-    assert_eq!(first.notes(), ["1 Ridges are not used"]);
+    assert_eq!(first.notes(), ["1 Ridges are not used", "the keyword 999, which is not known, is not used"]);
     for version in 1..=4 {
         for big in [false, true] {
             let content = tet(version, big);
@@ -120,7 +120,9 @@ fn a_file_without_an_end_is_read_to_its_end() {
     for version in [2, 4] {
         let whole = tet(version, false);
         let end = whole.len() - if version > 2 { 12 } else { 8 };
-        assert_eq!(binary(&whole[..end]).unwrap(), binary(&whole).unwrap());
+        let (cut, whole) = (binary(&whole[..end]).unwrap(), binary(&whole).unwrap());
+        assert_eq!((cut.points(), cut.blocks()), (whole.points(), whole.blocks()));
+        assert!(cut.notes().iter().any(|note| note.contains("no keyword End")), "{:?}", cut.notes());
     }
 }
 
@@ -175,6 +177,7 @@ fn nodes_lie_where_the_ordering_says() {
                         file += &format!("{}\n", row.iter().map(u8::to_string).collect::<Vec<_>>().join(" "));
                     }
                 }
+                file += "End\n";
                 let mesh = text(&file).unwrap_or_else(|flaw| panic!("{cell} {order}: {}", flaw.fault));
                 let element = mesh.blocks()[0].elements(order).next().unwrap();
                 for (node, at) in element.iter().zip(nodes) {

@@ -20,8 +20,13 @@ const INDICES: usize = 2;
 /// # Errors
 /// The first [`Fault`] and its place. Memory stays within a small multiple of `length`.
 pub(super) fn read(input: impl BufRead, length: u64) -> Result<Mesh, Flaw> {
-    let mut file =
-        File { scanner: Scanner::new(input, length), announced: None, zones: Vec::new(), passing_over: false };
+    let mut file = File {
+        scanner: Scanner::new(input, length),
+        announced: None,
+        ahead: None,
+        zones: Vec::new(),
+        passing_over: false,
+    };
     let mut notes = Vec::new();
     while let Some(line) = file.line()? {
         file.section(&line, &mut notes)?;
@@ -42,6 +47,8 @@ struct File<R> {
     scanner: Scanner<R>,
     /// `NZONE=`.
     announced: Option<u64>,
+    /// `NDIME=` before the first zone: that of the zones that do not say theirs.
+    ahead: Option<usize>,
     zones: Vec<Zone>,
     /// Whether the lines behind the last key are of a section that is not read.
     passing_over: bool,
@@ -115,7 +122,8 @@ impl<R: BufRead> File<R> {
                 let bare = self.zones.pop_if(|zone| zone.is_bare());
                 self.end_zone(notes)?;
                 self.number("a zone's number", value)?;
-                self.zones.push(Zone { dimension: bare.and_then(|zone| zone.dimension), ..Zone::default() });
+                self.ahead = self.ahead.or(bare.and_then(|zone| zone.dimension));
+                self.zones.push(Zone::default());
             }
             "NDIME" => {
                 let dimension = match value {
@@ -165,7 +173,7 @@ impl<R: BufRead> File<R> {
     }
 
     fn dimension(&mut self, later: &'static str) -> Result<usize, Flaw> {
-        let known = self.zone().dimension;
+        let known = self.zone().dimension.or(self.ahead);
         known.ok_or_else(|| self.flaw(Su2Fault::Order { earlier: "NDIME", later }))
     }
 
