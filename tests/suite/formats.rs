@@ -308,7 +308,7 @@ fn what_cannot_be_written_is_told_and_leaves_no_file() {
     };
     let plain = WriteOptions::default();
     assert!(refused("mesh.stl", &plain).contains("name it .msh, .cgns, .h5, .mfem, .meshb, .mesh, .su2 or .vtu"));
-    assert!(refused("mesh", &plain).contains("name it .msh, .cgns, .meshb, .mesh or .vtu"));
+    assert!(refused("mesh", &plain).contains("name it .msh, .cgns, .h5, .mfem, .meshb, .mesh, .su2 or .vtu"));
     assert!(refused("none/mesh.msh", &plain).contains("cannot create: No such file"));
     let short = Field { name: "short".into(), support: Support::Elements, values: Values::Integer(vec![1, 2]) };
     let options = WriteOptions { fields: &[short], ..plain };
