@@ -18,7 +18,7 @@ SAGITTA := $(TARGET)/release/sagitta
 
 # The steps of a target run in their order, also under -j.
 .NOTPARALLEL:
-.PHONY: help setup setup-build build demo venv test lint unit examples fuzz fuzz-coverage parsers bench oracle table engines picture bench-cases consumers solvers convergence figures reliability gauntlet-3d gauntlet-2d schema doc
+.PHONY: help setup setup-build build demo venv test lint unit examples fuzz fuzz-coverage parsers bench oracle table engines picture bench-cases consumers solvers convergence figures reliability same-bits gauntlet-3d gauntlet-2d schema doc
 
 help: ## this list
 	@echo "sagitta curves linear viscous CFD meshes onto their CAD. Targets:"
@@ -122,6 +122,10 @@ gauntlet-2d: build ## viscous plane meshes made round random airfoils, curved at
 
 reliability: build ## kills at random times, full disks, signals in each step: what is left behind; root or `unshare -Urm`; 10 minutes
 	$(PYTHON) tests/reliability/harm.py $(SAGITTA)
+
+same-bits: build ## the optimised program and one that is hardly optimised write the same meshes; minutes
+	cargo build --bin sagitta
+	$(PYTHON) tests/reliability/same_bits.py $(SAGITTA) $(TARGET)/debug/sagitta
 
 schema: ## write the JSON Schemas of the reports to docs/schema
 	cargo test --test suite --profile $(TEST_PROFILE) schema::write -- --ignored

@@ -23,6 +23,6 @@ pub use lattice::{edge_nodes, face_lattice, lattice, side_nodes};
 pub use net::Net;
 pub use orientation::{InteriorSlots, canonical, interior_count, interior_slots, interior_start, mirrored};
 pub use samples::Samples;
-pub use subdivision::corner_simplices;
+pub use subdivision::{corner_simplices, simplex_nodes};
 pub use tables::Tables;
 pub use volume::signed_volume;

@@ -27,6 +27,12 @@ pub fn corner_simplices(cell: Cell, order: Order) -> &'static [Vec<[u8; 4]>] {
     })
 }
 
+/// The nodes of a corner simplex, each once.
+#[must_use]
+pub fn simplex_nodes(simplex: &[u8; 4]) -> &[u8] {
+    if simplex[0] == simplex[3] { &simplex[..3] } else { simplex }
+}
+
 /// The lists of corner simplices of one cell, one a way to cut it.
 type Cuts = Vec<Vec<[u8; 4]>>;
 

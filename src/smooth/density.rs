@@ -32,15 +32,17 @@ pub(super) struct Jet {
     pub(super) curvature: f64,
 }
 
-/// A shape sample's value and what its nodes' derivatives are made of.
-pub(super) struct ShapeSample {
+/// A shape sample's value and what its nodes' derivatives are made of; `FLAT` in the plane.
+///
+/// `FLAT` is known when this is compiled: with a branch in [`ShapeSample::hessian`] rustc 1.95 at `-O3` gives the block's yz entry a wrong
+/// value wherever it inlines all of it (see `make same-bits`).
+pub(super) struct ShapeSample<const FLAT: bool> {
     pub(super) value: f64,
     /// Derivative of the value by `T`.
     pub(super) stress: DMat3,
     t: DMat3,
     cofactor: DMat3,
     norms: [f64; 2],
-    flat: bool,
     chi: Jet,
     ratio: f64,
     emphasis: Jet,
@@ -95,19 +97,19 @@ impl Density {
     }
 
     /// The shape term of a corner simplex, with derivatives.
-    pub(super) fn shape(&self, t: DMat3, flat: bool) -> ShapeSample {
+    pub(super) fn shape<const FLAT: bool>(&self, t: DMat3) -> ShapeSample<FLAT> {
         let cofactor = cofactor(t);
-        let Norms { first, second, dimension } = norms(t, cofactor, flat);
+        let Norms { first, second, dimension } = norms(t, cofactor, FLAT);
         let norms = [first, second];
         let chi = self.chi(t.x_axis.dot(cofactor.x_axis));
         let ratio = norms[0] * norms[1] / (dimension * dimension * chi.value * chi.value);
         let emphasis = self.emphasised(ratio - 1.0);
         // d|T|^2 = 2 T, d|cof T|^2 = 2 (|T|^2 T - T T^T T), d det = cof T.
         let first = t * (2.0 / norms[0]);
-        let second = if flat { first } else { (t * norms[0] - t * (t.transpose() * t)) * (2.0 / norms[1]) };
+        let second = if FLAT { first } else { (t * norms[0] - t * (t.transpose() * t)) * (2.0 / norms[1]) };
         let log = first + second - cofactor * (2.0 * chi.slope / chi.value);
         let value = if chi.value > 0.0 { emphasis.value } else { f64::INFINITY };
-        ShapeSample { value, stress: log * (ratio * emphasis.slope), t, cofactor, norms, flat, chi, ratio, emphasis }
+        ShapeSample { value, stress: log * (ratio * emphasis.slope), t, cofactor, norms, chi, ratio, emphasis }
     }
 }
 
@@ -122,7 +124,7 @@ impl Jet {
     }
 }
 
-impl ShapeSample {
+impl<const FLAT: bool> ShapeSample<FLAT> {
     /// Hessian by the position of the node whose hat function has the gradient `g` in the target.
     ///
     /// `|adj T|^2` has the Hessian `2 (|H|^2 I - H H^T)`, `H = T [g]x`.
@@ -130,7 +132,7 @@ impl ShapeSample {
         let [q1, _] = self.norms;
         let first = DMat3::from_diagonal(DVec3::splat(2.0 * g.length_squared() / q1));
         let u = self.t * g * (2.0 / q1);
-        let (second, v) = if self.flat { (first, u) } else { self.of_adjugate(g) };
+        let (second, v) = if FLAT { (first, u) } else { self.of_adjugate(g) };
         let c = self.cofactor * g;
         let w = c * (self.chi.slope / self.chi.value);
         let log = u + v - 2.0 * w;
@@ -212,11 +214,16 @@ mod tests {
                     assert_eq!(density.shape_value(t, flat), f64::INFINITY);
                     continue;
                 }
-                let sample = density.shape(t, flat);
-                assert!((sample.value - density.shape_value(t, flat)).abs() < 1e-9 * sample.value.abs().max(1.0));
+                let (value, stress, hessian) = if flat {
+                    let sample = density.shape::<true>(t);
+                    (sample.value, sample.stress, sample.hessian(g))
+                } else {
+                    let sample = density.shape::<false>(t);
+                    (sample.value, sample.stress, sample.hessian(g))
+                };
+                assert!((value - density.shape_value(t, flat)).abs() < 1e-9 * value.abs().max(1.0));
                 let f = |h: f64| density.shape_value(t + outer(d * h, g), flat);
-                let slope = (sample.stress * g).dot(d);
-                check_rates(f, slope, (sample.hessian(g) * d).dot(d), &format!("{density:?}"));
+                check_rates(f, (stress * g).dot(d), (hessian * d).dot(d), &format!("{density:?}"));
             }
         }
     }

@@ -17,7 +17,7 @@ use super::kernel::{Element, Kernel, hats};
 use super::objective::{Gathered, Objective};
 use super::survey::Scratch;
 use super::{Constraint, Freedom};
-use crate::element::corner_simplices;
+use crate::element::{corner_simplices, simplex_nodes};
 use crate::quality::{c_wcn_slope, corner_frame, nodal};
 
 /// Longest step, as a fraction of the inscribed radius. Of 0.02, 0.05, 0.1, 0.25 and 0.5 the best on wing_sharp at scale 0.4, P2,
@@ -149,10 +149,11 @@ fn costs(objective: &Objective, x: &[DVec3]) -> Vec<(f64, DVec3)> {
 
 /// Adds an element's sub-elements and survey points to the shares of its nodes.
 fn shares(kernel: &Kernel, element: &Element, jacobian: bool, scratch: &mut Scratch, nodes: &mut [[Share; 2]]) {
+    let flat = kernel.cell.is_flat();
     for &simplex in &corner_simplices(kernel.cell, kernel.order)[usize::from(element.cut)] {
         let w = corner_frame(simplex, element.targets).inverse();
-        let (value, stress) = c_wcn_slope(corner_frame(simplex, element.points) * w, kernel.cell.is_flat());
-        for (node, hat) in hats(simplex, w) {
+        let (value, stress) = c_wcn_slope(corner_frame(simplex, element.points) * w, flat);
+        for (&node, hat) in simplex_nodes(&simplex).iter().zip(hats(w, flat)) {
             nodes[usize::from(node)][0].add(value, stress * hat);
         }
     }

@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 use super::density::Density;
 use super::derivative::NodeDerivative;
 use super::survey::{Scratch, Survey};
-use crate::element::{Cell, Order, corner_simplices};
+use crate::element::{Cell, Order, corner_simplices, simplex_nodes};
 use crate::quality::{Cut, corner_frame};
 
 /// Weights of the two components of equation (2), and how their samples count.
@@ -78,14 +78,22 @@ impl Kernel {
     }
 
     fn shape_derivatives(&self, element: &Element, weights: &Weights, nodes: &mut [NodeDerivative]) -> f64 {
+        if self.cell.is_flat() {
+            self.shape_sums::<true>(element, weights, nodes)
+        } else {
+            self.shape_sums::<false>(element, weights, nodes)
+        }
+    }
+
+    fn shape_sums<const FLAT: bool>(&self, element: &Element, weights: &Weights, nodes: &mut [NodeDerivative]) -> f64 {
         let simplices = &corner_simplices(self.cell, self.order)[usize::from(element.cut)];
-        let (flat, scale) = (self.cell.is_flat(), weights.shape / simplices.len() as f64);
+        let scale = weights.shape / simplices.len() as f64;
         let mut value = 0.0;
         for &simplex in simplices {
             let w = corner_frame(simplex, element.targets).inverse();
-            let sample = weights.density.shape(corner_frame(simplex, element.points) * w, flat);
+            let sample = weights.density.shape::<FLAT>(corner_frame(simplex, element.points) * w);
             value += scale * sample.value;
-            for (node, g) in hats(simplex, w) {
+            for (&node, g) in simplex_nodes(&simplex).iter().zip(hats(w, FLAT)) {
                 let node = &mut nodes[usize::from(node)];
                 node.gradient += sample.stress * g * scale;
                 node.hessian += sample.hessian(g) * scale;
@@ -95,12 +103,12 @@ impl Kernel {
     }
 }
 
-/// The nodes of a corner simplex with the gradients of their hat functions in its target, `w` being the inverse of the target's frame.
-pub(super) fn hats(simplex: [u8; 4], w: DMat3) -> impl Iterator<Item = (u8, DVec3)> {
+/// Gradients of a corner simplex' hat functions in its target, by its nodes, `w` being the inverse of the target's frame; of a plane one
+/// (`flat`) the fourth is none.
+pub(super) fn hats(w: DMat3, flat: bool) -> [DVec3; 4] {
     let rows = w.transpose();
-    let flat = simplex[0] == simplex[3];
-    let first = if flat { rows.x_axis + rows.y_axis } else { rows.x_axis + rows.y_axis + rows.z_axis };
-    simplex.into_iter().zip([-first, rows.x_axis, rows.y_axis, rows.z_axis]).take(if flat { 3 } else { 4 })
+    let [x, y, z] = [rows.x_axis, rows.y_axis, if flat { DVec3::ZERO } else { rows.z_axis }];
+    [-(x + y + z), x, y, z]
 }
 
 #[cfg(test)]
