@@ -43,6 +43,7 @@ pub use {
     closest::hint::Hint,
     geometry::evaluation::{CurvePoint, Evaluation, SurfacePoint},
     model::containment::Stray,
+    model::crease::Crease,
     model::health::{Health, TrimFault},
     model::reference::ReferenceError,
     model::{Edge, Face, Kind, Label, Model, NamedGroup, Sewing, SourceFormat, Unit, Vertex},

@@ -58,3 +58,10 @@ pub const BOUND_SAFETY: f64 = 1.5;
 
 /// A trimming curve that enters a leaf by less than this fraction of the leaf's size only touches it.
 pub const TOUCH: f64 = 1e-9;
+
+/// A surface that turns by more along a line inside its face has a crease there. Radians; surfaces that are meant to be smooth turn by less
+/// than a hundredth.
+pub const CREASE: f64 = 0.02;
+
+/// How far beside a line its two sides are looked at. Fraction of the range of parameters to the next line.
+pub const CREASE_INSET: f64 = 1e-6;

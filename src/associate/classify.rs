@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use cad::{Aabb, EntityId, Kind, Model};
 use rustc_hash::{FxHashMap, FxHashSet};
 
+use super::flaws::flaws;
 use super::host::{is_host, kind_of};
 use super::side::SMOOTH;
 use super::witnesses::{combined, completed};
@@ -202,6 +203,7 @@ impl Classifier<'_> {
         let offset = self.sources.max_offset;
         let mut association = associate(self.mesh, self.boundary, self.model, &candidates, offset)?;
         association.notes.extend(self.model.losses());
+        association.notes.extend(flaws(self.model, &association.surfaces));
         association.notes.append(&mut candidates.notes);
         Ok(Classified { candidates, association, inference, source })
     }

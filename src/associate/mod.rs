@@ -17,6 +17,7 @@ mod choice;
 mod classify;
 mod document;
 mod error;
+mod flaws;
 mod host;
 mod infer;
 mod joint;

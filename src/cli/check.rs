@@ -20,6 +20,9 @@ pub(super) struct Options {
     /// The linear mesh that it was made from: the reference of its Jacobians [default: each element's own corners]
     #[arg(long, value_name = "P1MESH")]
     linear: Option<PathBuf>,
+    #[cfg(feature = "cad")]
+    #[command(flatten)]
+    room: super::with_cad::Room,
     /// Also write what is proven as JSON
     #[arg(long, value_name = "R.json")]
     report: Option<PathBuf>,
@@ -42,12 +45,19 @@ struct Refused {
     cause: NotCertifiable,
 }
 
+impl Options {
+    fn files(&self) -> Files {
+        let files =
+            Files::of_mesh(&self.mesh).reads("--linear", self.linear.as_ref()).writes("--report", self.report.as_ref());
+        #[cfg(feature = "cad")]
+        let files = self.room.files(files);
+        files
+    }
+}
+
 /// Certifies a mesh and prints what is proven.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
-    Files::of_mesh(&options.mesh)
-        .reads("--linear", options.linear.as_ref())
-        .writes("--report", options.report.as_ref())
-        .check()?;
+    options.files().check()?;
     let mesh = input::mesh(&options.mesh)?;
     let unperturbed = match &options.linear {
         None => None,
@@ -63,7 +73,12 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     };
     let certificate = certify::check(&mesh, mesh.points(), unperturbed.as_deref(), &Settings::default())
         .map_err(|cause| Refused { mesh: options.mesh.display().to_string(), cause })?;
-    let report = CheckReport::new(&options.mesh, &mesh, &certificate);
+    #[cfg_attr(not(feature = "cad"), expect(unused_mut))]
+    let mut report = CheckReport::new(&options.mesh, &mesh, &certificate);
+    #[cfg(feature = "cad")]
+    {
+        report.association = options.room.look(&options.mesh, &mesh)?;
+    }
     let mut beside = Beside::default();
     if let Some(path) = &options.report {
         beside.tell(write_json(path, &report));

@@ -41,7 +41,9 @@ pub(super) fn check() -> String {
     let examples = "
   sagitta check fixtures/samples/hexpyrtet_p3_msh41a.msh
   sagitta check weeble_p3.msh --linear fixtures/weeble/weeble.msh \\
-      --report weeble_check.json";
+      --report weeble_check.json
+  sagitta check fixtures/weeble/weeble.msh --cad fixtures/weeble/weeble.step \\
+      --order 3";
     below(examples, &[DONE, COULD_NOT_RUN, NOT_CERTIFIED, SIDE_FILE])
 }
 

@@ -1,7 +1,7 @@
 //! Checkpoint files: a state of the smoothing, and of what work it is.
 //!
 //! ```text
-//! "sagitta checkpoint 4\n"                 21 bytes
+//! "sagitta checkpoint 5\n"                 21 bytes
 //! fingerprint of the work                  u64, little-endian
 //! volume elements, nodes                   2 x u64
 //! state                                    smooth::Checkpoint
@@ -20,7 +20,7 @@ use super::level::Level;
 use crate::formats;
 use crate::smooth::Checkpoint;
 
-const MAGIC: &[u8; 21] = b"sagitta checkpoint 4\n";
+const MAGIC: &[u8; 21] = b"sagitta checkpoint 5\n";
 
 /// What a checkpoint belongs to: the same mesh, CAD and settings give the same number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -12,10 +12,10 @@ use super::level::Case;
 use super::observer::{Clock, Observer, Step};
 use super::orders::projected;
 use super::settings::Settings;
-use crate::associate::{self, AssociateError, Classified, Linkage, Summary};
+use crate::associate::{self, AssociateError, Classified, Linkage, OpenFace, Summary};
 use crate::element::Order;
 use crate::formats;
-use crate::mesh::Mesh;
+use crate::mesh::{Boundary, Mesh};
 
 /// What is to be curved, and how.
 #[derive(Clone, Debug)]
@@ -36,6 +36,19 @@ pub struct Job {
     pub solver: Option<(PathBuf, &'static formats::Solver)>,
     /// What is asked for.
     pub settings: Settings,
+}
+
+/// What is known of a curving before it is begun.
+#[derive(Debug)]
+pub struct Preview {
+    /// What would lie on what, and where the CAD leaves little room.
+    pub summary: Summary,
+    /// The linear mesh.
+    pub linear: Mesh,
+    /// Its boundary elements.
+    pub boundary: Boundary,
+    /// Those that belong to the CAD and would stay straight.
+    pub open_faces: Vec<OpenFace>,
 }
 
 impl Job {
@@ -70,7 +83,7 @@ impl Job {
     ///
     /// # Errors
     /// [`JobError`].
-    pub fn association(&self) -> Result<Summary, JobError> {
+    pub fn association(&self) -> Result<Preview, JobError> {
         let linear = self.read_mesh()?;
         let associate = |cad: &Model| self.associated(&linear, cad);
         let (own, cad) = self.scaled(self.read_cad(self.cad_scale.unwrap_or(1.0))?, associate)?;
@@ -80,7 +93,8 @@ impl Job {
         let case = Case { settings: &self.settings, boundary: &own.boundary, association };
         let level = projected(case, &linear, self.settings.order).map_err(|cause| self.error(cause))?;
         summary.spots = spots(&level).iter().map(|spot| curvability::report(&level, spot)).collect();
-        Ok(summary)
+        let Associated { boundary, open_faces, .. } = own;
+        Ok(Preview { summary, linear, boundary, open_faces })
     }
 
     fn read_mesh(&self) -> Result<Mesh, JobError> {

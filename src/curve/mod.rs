@@ -56,7 +56,7 @@ pub mod wall_state;
 pub use checkpointing::Checkpointing;
 pub use driver::{Curved, curve};
 pub use error::{Error, JobError};
-pub use job::Job;
+pub use job::{Job, Preview};
 pub use observer::{Observer, Step};
 pub use orders::LowerOrder;
 pub use settings::Settings;

@@ -159,7 +159,7 @@ fn patch(curved: &Curved, entity: EntityKey) -> PatchReport {
 }
 
 /// The largest distance of a boundary face from the CAD that it is associated with.
-fn distance(curved: &Curved, face: usize) -> Option<f64> {
+pub(super) fn distance(curved: &Curved, face: usize) -> Option<f64> {
     let Classification::Surface(surface) = curved.association.faces[face] else { return None };
     let group = &curved.association.surfaces[surface].group;
     let (order, cell) = (curved.mesh.order(), curved.boundary.faces[face].cell);

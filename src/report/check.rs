@@ -7,6 +7,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::certificate::CertificateReport;
+#[cfg(feature = "cad")]
+use crate::associate::Summary;
 use crate::certify::{Certificate, Tally};
 use crate::element::Cell;
 use crate::mesh::{Mesh, Plane, Skin};
@@ -32,6 +34,10 @@ pub struct CheckReport {
     pub cells: Vec<CellCounts>,
     /// Minima and the elements that have them.
     pub certificate: CertificateReport,
+    /// What lies on which CAD, and where that leaves little room; only where CAD is given.
+    #[cfg(feature = "cad")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub association: Option<Summary>,
     /// What a user should know.
     pub notes: Vec<String>,
 }
@@ -66,6 +72,8 @@ impl CheckReport {
             certified: certificate.holds(),
             cells: certificate.tallies().map(counts).collect(),
             certificate: CertificateReport::new(mesh, certificate),
+            #[cfg(feature = "cad")]
+            association: None,
             notes: certificate.normal.into_iter().filter_map(orientation).chain(Skin::of(mesh).notes(mesh)).collect(),
         }
     }

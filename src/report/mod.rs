@@ -28,6 +28,8 @@ pub mod feet;
 mod fields;
 #[cfg(feature = "cad")]
 pub mod groups;
+#[cfg(feature = "cad")]
+mod left_open;
 mod schema;
 mod text;
 
@@ -43,6 +45,7 @@ pub use {
     feet::{CadReport, FeetReport, end_of},
     fields::fields,
     groups::Groups,
+    left_open::{left_open, undecided},
 };
 
 /// Proven bounds of a minimum: it is not smaller than `lower`, and a value of at most `upper` is attained.

@@ -38,8 +38,8 @@ impl Checkpoint<'_> {
     /// # Errors
     /// Those of `out`.
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
-        let Pace { stage, idle, low_rings, focused, round, spent } = self.pace;
-        out.write_all(&[u8::from(stage == Stage::Full), u8::from(focused)])?;
+        let Pace { stage, idle, low_rings, gained, focused, round, spent } = self.pace;
+        out.write_all(&[u8::from(stage == Stage::Full), u8::from(focused), u8::from(gained)])?;
         let Summary { c_wcn, c_jac, inverted } = self.start;
         for cost in [c_wcn, c_jac] {
             out.write_all(&cost.to_le_bytes())?;
@@ -64,13 +64,13 @@ impl Checkpoint<'_> {
     /// # Errors
     /// Those of `input`, also where it ends early; [`io::ErrorKind::InvalidData`] for a node that there is not.
     pub fn read(input: &mut impl Read, elements: usize, nodes: usize) -> io::Result<Checkpoint<'static>> {
-        let [full, focused] = array(input)?;
+        let [full, focused, gained] = array(input)?;
         let stage = if full == 1 { Stage::Full } else { Stage::Shape };
         let [c_wcn, c_jac] = [f64::from_le_bytes(array(input)?), f64::from_le_bytes(array(input)?)];
         let mut number = || array(input).map(|bytes| u64::from_le_bytes(bytes) as usize);
         let start = Summary { c_wcn, c_jac, inverted: number()? };
         let (idle, low_rings, round, spent) = (number()?, number()?, number()?, number()?);
-        let pace = Pace { stage, idle, low_rings, focused: focused == 1, round, spent };
+        let pace = Pace { stage, idle, low_rings, gained: gained == 1, focused: focused == 1, round, spent };
         let sweeps = number()?;
         let mut density = vec![0; elements];
         input.read_exact(&mut density)?;

@@ -8,7 +8,7 @@ const PROGRESS: f64 = 2e-3;
 /// Rings of neighbours that are activated around the elements below the threshold.
 pub(super) const RINGS: usize = 2;
 /// Most rings around elements nearly inverted that do not come out of it.
-pub(super) const MOST_RINGS: usize = 8;
+const MOST_RINGS: usize = 8;
 /// Idle rounds after which a focused stage ends.
 pub(super) const PATIENCE: usize = 4;
 
@@ -35,6 +35,8 @@ pub(crate) struct Pace {
     pub(crate) idle: usize,
     /// Rings around elements nearly inverted.
     pub(crate) low_rings: usize,
+    /// Whether a round gained something since there were that many.
+    pub(crate) gained: bool,
     /// Whether the worst elements are worked on alone.
     pub(crate) focused: bool,
     /// Most sweeps of the next round.
@@ -70,18 +72,37 @@ impl Pace {
 
     /// That of a stage that begins.
     pub(super) fn new(stage: Stage, engine: Engine) -> Pace {
-        Pace { stage, idle: 0, low_rings: RINGS, focused: false, round: *engine.rounds().start(), spent: 0 }
+        Pace {
+            stage,
+            idle: 0,
+            low_rings: RINGS,
+            gained: false,
+            focused: false,
+            round: *engine.rounds().start(),
+            spent: 0,
+        }
     }
 
     /// After a round: where it gained next to nothing and its descent was cut off, the next one is longer.
     pub(super) fn after(&mut self, gained: f64, sweeps: usize, engine: Engine) {
         if gained >= PROGRESS {
-            self.idle = 0;
+            (self.idle, self.gained) = (0, true);
         } else if sweeps == self.round && self.round < *engine.rounds().end() {
             self.round *= 2;
         } else {
             self.idle += 1;
         }
+    }
+
+    /// Whether more rings are worth trying around elements nearly inverted: not where the last ones made no difference.
+    pub(super) fn may_widen(&self) -> bool {
+        self.low_rings < MOST_RINGS && (self.gained || self.low_rings == RINGS)
+    }
+
+    /// Takes more rings.
+    pub(super) fn widen(&mut self) {
+        self.low_rings *= 2;
+        self.gained = false;
     }
 
     /// Without numbers beyond what a run reaches: they come from a forged file, and must not cost more than the work does.

@@ -21,7 +21,7 @@ use super::engine::Engine;
 use super::gradient::climb;
 use super::kernel::Weights;
 use super::objective::Objective;
-use super::pace::{MOST_RINGS, PATIENCE, Pace, RINGS, Stage};
+use super::pace::{PATIENCE, Pace, RINGS, Stage};
 use super::patch::Patch;
 use super::problem::Kernels;
 use super::{Checkpoint, Constraint, ElementCost, Image, Problem, Progress, Settings, Smoothed, Summary, Watch};
@@ -174,7 +174,7 @@ impl Run<'_, '_> {
             if self.pace.idle >= if focused { PATIENCE } else { 2 } {
                 self.pace.idle = 0;
                 match (low, focused) {
-                    (true, _) if self.pace.low_rings < MOST_RINGS => self.pace.low_rings *= 2,
+                    (true, _) if self.pace.may_widen() => self.pace.widen(),
                     (false, false) if self.lowest() + FOCUS < self.settings.threshold => {
                         self.pace.focused = true;
                         self.go_back(x);

@@ -166,9 +166,9 @@ fn a_wall_beside_its_cad_is_told_with_its_distance() {
         off = 4e-4; // the mesh is 3.5 across, the first cell 1e-3 high
         wall.into_iter().for_each(|n| parts.points[n] *= 1.0 + off);
     });
-    let [out, report] = ["out.msh", "report.json"].map(|name| folder.path().join(name));
+    let [out, report, picture] = ["out.msh", "report.json", "open.msh"].map(|name| folder.path().join(name));
     let options = args!["curve", mesh, "--cad", cad, "--order", "2", "-q", "-o", out, "--report", report];
-    let told = sagitta(options.iter()).expect(3).stdout;
+    let told = sagitta(options.iter().chain(&args!["--open-faces", picture])).expect(3).stdout;
     let open = json(&report)["open_faces"].as_array().unwrap().clone();
     assert!(
         !open.is_empty() && open.iter().all(|face| face["cause"].as_str().unwrap().contains("beyond the tolerance"))
@@ -176,6 +176,14 @@ fn a_wall_beside_its_cad_is_told_with_its_distance() {
     let far = open.iter().map(|face| face["cad_distance"].as_f64().unwrap()).fold(0.0, f64::max);
     assert!((far / off - 1.0).abs() < 0.01, "{far}");
     assert!(told.contains("remedy: --tolerance 8.0e-4"), "{told}");
+    // They can be looked at: the mesh of them has them all, each in the group of its cause.
+    let drawn = formats::read(&picture).unwrap();
+    let groups: Vec<&str> = drawn.physical_names().iter().map(|name| name.name.as_str()).collect();
+    assert_eq!((drawn.counts().values().sum::<usize>(), groups), (open.len(), vec!["beside the CAD"]));
+    assert!(drawn.points().iter().all(|x| (x.length() - 1.0 - off).abs() < 1e-9));
+    let shown = folder.path().join("open.vtu");
+    sagitta(args!["curve", mesh, "--cad", cad, "--order", "2", "--dry-run", "--open-faces", shown]).expect(0);
+    assert!(std::fs::read_to_string(&shown).unwrap_or_default().contains("cad_distance"));
     let told = sagitta(options.iter().chain(&args!["--tolerance", "8.0e-4"])).expect(0).stdout;
     assert!(told.contains("with 0 faces and 0 edges undecided"), "{told}");
 }

@@ -88,7 +88,7 @@ fn only_faces_at_the_cornered_element_leave_the_cad() {
 #[test]
 fn the_dry_run_names_the_cornered_element() {
     let folder = tempfile::tempdir().unwrap();
-    let [linear, report] = ["linear.msh", "report.json"].map(|name| folder.path().join(name));
+    let [linear, report, own] = ["linear.msh", "report.json", "check.json"].map(|name| folder.path().join(name));
     let mesh = with_a_cornered_tet();
     let tet = mesh.elements_of(Cell::Tet).iter().map(|own| own.tag).max().unwrap();
     formats::write(&linear, &mesh, &WriteOptions::default()).unwrap();
@@ -100,6 +100,10 @@ fn the_dry_run_names_the_cornered_element() {
     assert!(!spots.is_empty() && spots.iter().all(named), "{told}");
     assert!(spots.iter().all(|spot| spot["q"].as_f64().unwrap() < 0.3), "{told}");
     assert!(told.contains("little room"), "{told}");
+    // `check` says the same of the same mesh, beside its certificate.
+    let checked = args!["check", linear, "--cad", fixture("sphere_shell", "step"), "--report", own];
+    let told = sagitta(checked).expect(0).stdout;
+    assert!(told.contains("little room") && json(&own)["association"]["spots"] == report["spots"], "{told}");
     // The mesh without it has room everywhere.
     let whole =
         args!["curve", fixture("sphere_shell", "msh"), "--cad", fixture("sphere_shell", "step"), "--order", "4"];

@@ -32,7 +32,12 @@
 #include <StepRepr_NextAssemblyUsageOccurrence.hxx>
 #include <StepRepr_GlobalUnitAssignedContext.hxx>
 #include <StepRepr_RepresentationItem.hxx>
+#include <StepGeom_SphericalSurface.hxx>
+#include <StepGeom_ToroidalSurface.hxx>
+#include <StepShape_FaceBound.hxx>
 #include <StepShape_FaceSurface.hxx>
+#include <StepShape_Loop.hxx>
+#include <StepShape_VertexLoop.hxx>
 #include <Standard_Failure.hxx>
 #include <TColStd_SequenceOfAsciiString.hxx>
 #include <TopExp.hxx>
@@ -224,6 +229,18 @@ void refuse_infinite(const Handle(StepData_StepModel)& model, const Handle(Stand
     if (!std::isfinite(point->CoordinatesValue(i))) throw std::runtime_error(step_id(model, entity) + ": coordinate " + std::to_string(i) + " is not a finite number");
 }
 
+// Whether a face has vertex loops for all its bounds, on a surface that is not closed by itself: OCCT takes the range that the surface came with.
+bool is_bounded_by_a_vertex(const Handle(Standard_Transient)& entity) {
+  const auto face = Handle(StepShape_FaceSurface)::DownCast(entity);
+  if (face.IsNull() || face->Bounds().IsNull() || face->FaceGeometry().IsNull()) return false;
+  if (face->FaceGeometry()->IsKind(STANDARD_TYPE(StepGeom_SphericalSurface)) || face->FaceGeometry()->IsKind(STANDARD_TYPE(StepGeom_ToroidalSurface))) return false;
+  for (int i = 1; i <= face->NbBounds(); i++) {
+    const Handle(StepShape_FaceBound) bound = face->BoundsValue(i);
+    if (bound.IsNull() || bound->Bound().IsNull() || !bound->Bound()->IsKind(STANDARD_TYPE(StepShape_VertexLoop))) return false;
+  }
+  return face->NbBounds() > 0;
+}
+
 void read_step(const std::string& path, Source& source) {
   STEPControl_Controller::Init();
   STEPControl_Reader reader;
@@ -234,6 +251,8 @@ void read_step(const std::string& path, Source& source) {
     if (model->IsErrorEntity(i) || model->IsRedefinedContent(i))
       warn(source, step_id(model, model->Value(i)), std::string("malformed ") + model->Value(i)->DynamicType()->Name());
     else refuse_infinite(model, model->Value(i));
+    if (is_bounded_by_a_vertex(model->Value(i)))
+      warn(source, step_id(model, model->Value(i)), "a face that is bounded by a vertex alone is taken for all of its surface");
   }
   warn_of_fails(reader, source, [&](const Handle(Standard_Transient)& entity) { return step_id(model, entity); });
   reader.TransferRoots();

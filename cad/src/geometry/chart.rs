@@ -249,7 +249,8 @@ impl Chart {
         u.iter().flat_map(|&u| v.iter().map(move |&v| Rect { u, v })).collect()
     }
 
-    fn cuts(&self, rect: Rect) -> [Vec<[f64; 2]>; 2] {
+    /// The ranges of both parameters between the lines along which the surface may not be smooth.
+    pub(crate) fn cuts(&self, rect: Rect) -> [Vec<[f64; 2]>; 2] {
         let ([u0, u1], [v0, v1]) = (rect.u, rect.v);
         match self {
             Self::Plane { .. } => [vec![rect.u], vec![rect.v]],

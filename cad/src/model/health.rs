@@ -3,6 +3,7 @@
 use crate::geometry::leaf::Side;
 use crate::geometry::newton;
 use crate::ids::{EdgeId, FaceId};
+use crate::model::crease::Crease;
 use crate::model::{Edge, Kind, Model};
 use crate::tolerance::{LOOSE, TINY, TRIM_GAP};
 use std::collections::BTreeMap;
@@ -32,6 +33,10 @@ pub struct Health {
     pub tiny_faces: Vec<FaceId>,
     /// Faces whose boundary contradicts itself or the surface.
     pub trims: Vec<(FaceId, TrimFault)>,
+    /// Lines inside faces at which the surface turns.
+    pub creases: Vec<Crease>,
+    /// Pairs of faces that cover each other, see [`Model::duplicate_faces`].
+    pub duplicate_faces: Vec<[FaceId; 2]>,
     /// Entities of the file that came to no shape, see [`Model::dropped`].
     pub dropped: Vec<String>,
     /// What OCCT's checks say, see [`Model::warnings`].
@@ -84,6 +89,8 @@ impl Model {
             tiny_edges: self.edges_where(|edge| !edge.degenerate && edge.bounds.diagonal() < TINY * self.diagonal()),
             tiny_faces: Vec::new(),
             trims: Vec::new(),
+            creases: Vec::new(),
+            duplicate_faces: self.duplicate_faces(),
             dropped: self.dropped().to_vec(),
             warnings: self.warnings().to_vec(),
         };
@@ -92,6 +99,7 @@ impl Model {
             if face.bounds.diagonal() < TINY * self.diagonal() {
                 health.tiny_faces.push(face.id);
             }
+            health.creases.extend(self.creases(face.id));
             health.trims.extend(self.trim_faults(face.id).into_iter().map(|fault| (face.id, fault)));
         }
         for edge in self.edges() {

@@ -1,6 +1,8 @@
 //! The CAD model: entities as plain data, and the geometry behind them.
 
 pub(crate) mod containment;
+pub(crate) mod crease;
+mod duplicate;
 pub(crate) mod health;
 pub(crate) mod reference;
 mod sewing;
@@ -295,7 +297,7 @@ impl Model {
             (!list.is_empty()).then(|| format!("{} entities of it {what}: {first}{more}", list.len()))
         };
         let lost = told(&self.dropped, "were dropped by the reader").into_iter();
-        let told: Vec<String> = lost.chain(told(&self.warnings, "are malformed")).collect();
+        let told: Vec<String> = lost.chain(told(&self.warnings, "are malformed or doubtful")).collect();
         (!told.is_empty()).then(|| format!("{}: {}", self.path.display(), told.join("; ")))
     }
 

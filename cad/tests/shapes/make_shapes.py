@@ -6,8 +6,9 @@ from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
 from OCP.BRepBuilderAPI import (BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeWire,
                                 BRepBuilderAPI_NurbsConvert)
 from OCP.BRepLib import BRepLib
-from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakeSphere
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakeRevol, BRepPrimAPI_MakeSphere
 from OCP.BRepTools import BRepTools
+from OCP.GC import GC_MakeArcOfCircle
 from OCP.Geom import (Geom_BSplineCurve, Geom_BSplineSurface, Geom_BezierSurface, Geom_ConicalSurface,
                       Geom_CylindricalSurface, Geom_OffsetSurface, Geom_SphericalSurface, Geom_SurfaceOfLinearExtrusion,
                       Geom_SurfaceOfRevolution, Geom_ToroidalSurface)
@@ -219,7 +220,23 @@ def pieces():
     return compound([face(cylinder, 0, 2, 0, 1), face(cylinder, 0, 0.8, 1, 3), face(cylinder, 0.8, 2, 1, 3)])
 
 
+def doubtful():
+    """A ridge inside a face, and two boxes that touch."""
+    boxes = [BRepPrimAPI_MakeBox(gp_Pnt(x, 0, 0), 1, 2, 3).Shape() for x in (10, 11)]
+    return compound([face(roof())] + boxes)
+
+
+def lemon():
+    """A solid whose one face is bounded by a vertex alone: an arc turned about its chord."""
+    arc = GC_MakeArcOfCircle(gp_Pnt(-2, 0, 0), gp_Pnt(0, 0.7, 0), gp_Pnt(2, 0, 0)).Value()
+    chord = BRepBuilderAPI_MakeEdge(gp_Pnt(2, 0, 0), gp_Pnt(-2, 0, 0)).Edge()
+    half = BRepBuilderAPI_MakeFace(BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(arc).Edge(), chord).Wire()).Face()
+    return BRepPrimAPI_MakeRevol(half, gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(1, 0, 0))).Shape()
+
+
 def main():
+    BRepTools.Write_s(doubtful(), os.path.join(folder, "doubtful.brep"))
+    step("lemon.step", lemon())
     BRepTools.Write_s(compound(kinds()), os.path.join(folder, "kinds.brep"))
     BRepTools.Write_s(box_with_hole(), os.path.join(folder, "plate.brep"))
     BRepTools.Write_s(compound(rims()), os.path.join(folder, "rims.brep"))

@@ -26,6 +26,31 @@ fn open_and_free_edges_are_told() {
     assert_eq!(curves.edges.get(&Kind::Circle), Some(&1));
 }
 
+/// A ridge of 87 degrees at the middle of a face, two boxes that touch in their faces 3 and 8, a lemon without edges.
+#[test]
+fn doubtful_faces_are_told() {
+    let model = shape("doubtful.brep");
+    let health = model.health();
+    let [ridge] = health.creases[..] else { panic!("{:?}", health.creases) };
+    assert_eq!((ridge.face.to_string().as_str(), ridge.direction, ridge.parameter), ("face:1", 0, 1.0));
+    let point = |u: f64| {
+        let at = |u: f64, v: f64| model.evaluate(ridge.face.into(), [u, v]).unwrap().point();
+        (at(u + 1e-4, 0.9) - at(u, 0.9)).cross(at(u, 0.9 + 1e-4) - at(u, 0.9))
+    };
+    let angle = point(1.0 - 1.1e-4).angle_between(point(1.0));
+    assert!((ridge.angle - angle).abs() < 1e-3 * angle && (ridge.place.x - 2.0).abs() < 1e-12, "{ridge}, not {angle}");
+    let doubled: Vec<String> = health.duplicate_faces.iter().flatten().map(ToString::to_string).collect();
+    assert_eq!(doubled, ["face:3", "face:8"]);
+
+    let told = shape("lemon.step").health().warnings;
+    assert!(told.iter().any(|told| told.contains("bounded by a vertex alone")), "{told:?}");
+
+    for smooth in [fixture("weeble/weeble.step"), fixture("torus/torus.step"), fixture("wing_sharp/wing_sharp.step")] {
+        let health = smooth.health();
+        assert!(health.creases.is_empty() && health.duplicate_faces.is_empty(), "{:?}", health);
+    }
+}
+
 /// The corner of a box moved away by a millimetre: edges and surfaces no longer meet.
 #[test]
 fn moved_boundaries_are_told() {

@@ -4,9 +4,10 @@ use std::collections::{BTreeMap, VecDeque};
 
 use cad::{EdgeId, FaceId};
 
-use super::Doubt;
+use super::before::{Before, Held};
 use super::incidence::Incidence;
 use super::volume_sides::VolumeSides;
+use super::{Doubt, Part};
 use crate::associate::joint::normal_at;
 use crate::associate::{Candidate, Joints, Side};
 use crate::mesh::{Boundary, EntityKey, Mesh};
@@ -28,17 +29,16 @@ struct FaceCandidate {
 
 /// For each mesh face its CAD face, or why it has none.
 pub(super) fn decide(
-    mesh: &Mesh,
-    boundary: &Boundary,
-    joints: &Joints<'_>,
+    part: Part<'_>,
     incidence: &Incidence,
     along: &[Vec<EdgeId>],
-    sides: &[Side],
-    told: Option<&VolumeSides>,
+    before: Option<&Before>,
 ) -> Vec<Result<FaceId, Doubt>> {
+    let Part { mesh, boundary, joints, sides, .. } = part;
     let mut candidates: Vec<Vec<FaceCandidate>> =
         (0..boundary.faces.len()).map(|f| candidates(f, boundary, joints, incidence, &sides[f])).collect();
-    let beside = told.map_or_else(Vec::new, |told| strike_beside(&mut candidates, mesh, boundary, joints, told));
+    let beside =
+        before.map_or_else(Vec::new, |before| strike_beside(&mut candidates, mesh, boundary, joints, &before.sides));
     strike_wrong_sides(&mut candidates);
     grow(boundary, joints, along, &mut candidates);
     for (f, own) in candidates.iter_mut().enumerate().filter(|(_, own)| own.len() > 1) {
@@ -59,7 +59,23 @@ pub(super) fn decide(
         }
         _ => Err(Doubt::Several(left.iter().map(|candidate| candidate.face.into()).collect())),
     };
-    candidates.iter().enumerate().map(|(f, left)| outcome(f, left)).collect()
+    let mut decided: Vec<_> = candidates.iter().enumerate().map(|(f, left)| outcome(f, left)).collect();
+    if let Some(before) = before {
+        let held: Vec<Held> = decided.iter().map(held).collect();
+        before
+            .apart(boundary, mesh.points().len(), &held)
+            .into_iter()
+            .for_each(|face| decided[face] = Err(Doubt::OffCad));
+    }
+    decided
+}
+
+fn held(decided: &Result<FaceId, Doubt>) -> Held {
+    match decided {
+        Ok(face) => Held::On((*face).into()),
+        Err(Doubt::OffCad | Doubt::PartlyOffCad) => Held::No,
+        Err(_) => Held::Open,
+    }
 }
 
 /// CAD faces that hold all corners, run along the face, and that its middle is near to.

@@ -8,13 +8,14 @@ use cad::{EdgeId, EntityId, Evaluation, Group, Model, VertexId};
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::before::{Before, Held};
 use super::faces::{ALONG, BULGE};
 use super::incidence::slacks;
 use super::volume_sides::told_by_most;
-use super::{Doubt, Inference, Tolerance};
+use super::{Doubt, Inference, Part, Tolerance};
 use crate::associate::host::normal_of;
 use crate::associate::joint::SHARP;
-use crate::associate::{Candidate, Candidates, Joints, Side};
+use crate::associate::{Candidate, Candidates, Side};
 use crate::mesh::{Boundary, EntityKey, Incidence, Mesh, NodeId};
 
 /// A side runs beside a CAD edge that is farther off than the tolerance, if it is nearer than this fraction of its length.
@@ -41,14 +42,8 @@ struct Sides<'a> {
 }
 
 /// Associates the sides of a plane mesh.
-pub(super) fn infer(
-    mesh: &Mesh,
-    boundary: &Boundary,
-    model: &Model,
-    joints: &Joints<'_>,
-    sides: &[Side],
-    tolerance: &Tolerance,
-) -> Inference {
+pub(super) fn infer(part: Part<'_>, tolerance: &Tolerance, before: Option<&Before>) -> Inference {
+    let Part { mesh, boundary, model, joints, sides } = part;
     let single = |(id, _): (EdgeId, _)| Group::of_edges(model, &[id]).ok().map(|group| (id, group));
     let curves = joints.edges().filter_map(single).collect();
     let ends = (0..).zip(&boundary.corners).flat_map(|(side, ends)| ends.iter().map(move |n| (n.index(), side)));
@@ -60,7 +55,21 @@ pub(super) fn infer(
     strike_wrong_sides(&mut candidates);
     own.grow(&mut candidates);
     own.keep_one_of_coincident(&mut candidates);
-    own.inference(candidates)
+    if let Some(before) = before {
+        let held: Vec<Held> = candidates.iter().map(|own| held(own)).collect();
+        let apart = before.apart(boundary, mesh.points().len(), &held);
+        apart.iter().for_each(|&side| candidates[side].clear());
+        return own.inference(candidates, &apart);
+    }
+    own.inference(candidates, &[])
+}
+
+fn held(candidates: &[EdgeCandidate]) -> Held {
+    match candidates {
+        [] => Held::No,
+        [only] => Held::On(only.edge.into()),
+        _ => Held::Open,
+    }
 }
 
 /// Strikes out candidates that have the cells on the other side, by what sides without a choice show.
@@ -164,9 +173,11 @@ impl Sides<'_> {
         }
     }
 
-    fn inference(&self, candidates: Vec<Vec<EdgeCandidate>>) -> Inference {
+    /// The sides' places; those `apart` (rising) have none.
+    fn inference(&self, candidates: Vec<Vec<EdgeCandidate>>, apart: &[usize]) -> Inference {
+        let is_apart = |side: usize| apart.binary_search(&side).is_ok();
         let spans: BTreeMap<usize, Vec<EdgeId>> = (0..candidates.len())
-            .filter(|&s| candidates[s].is_empty())
+            .filter(|&s| candidates[s].is_empty() && !is_apart(s))
             .filter_map(|s| Some((s, self.smooth_pair(s)?)))
             .collect();
         let mut joined = JoinedEdges::default();
@@ -178,7 +189,7 @@ impl Sides<'_> {
                 (&[EdgeCandidate { edge, .. }], _) => joined.of(edge),
                 ([], Some(pair)) => joined.of(pair[0]),
                 (several, _) => {
-                    doubts.push((side, self.doubt(side, several)));
+                    doubts.push((side, if is_apart(side) { Doubt::OffCad } else { self.doubt(side, several) }));
                     continue;
                 }
             };

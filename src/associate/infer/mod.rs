@@ -5,8 +5,8 @@
 //! 2. **Candidates.** A mesh face may lie on the CAD faces that hold all its corners, that run along it, and that its middle is near to.
 //! 3. **Sides.** Mesh faces with one candidate show on which side of each CAD face the volume is. Candidates with the volume on the other side are
 //!    struck out: at a sharp edge both sides of a thin plate hold all corners of some faces.
-//!    So are, where a wider tolerance is tried, candidates of faces that face the other way and lie farther off than others: the outer boundary of a
-//!    thin mesh runs beside the CAD too.
+//!    So are, where a wider tolerance is tried, candidates of faces that face the other way and lie farther off than others, and of faces that hang
+//!    together with none that the first one found ([`before`]): the outer boundary of a thin mesh runs beside the CAD too.
 //! 4. **Growth.** A mesh face that still has a choice goes with a neighbour across a mesh edge that runs along no CAD edge, and not with one across
 //!    an edge of the neighbour's CAD face. Nearness never decides.
 //! 5. **Smooth groups.** Faces whose corners no single CAD face holds, but several that go on smoothly in one another do, lie on these together.
@@ -15,6 +15,7 @@
 //!
 //! What is left is undecided: it is listed, and associated with nothing.
 
+mod before;
 mod edges;
 mod faces;
 mod in_plane;
@@ -27,8 +28,8 @@ use cad::{Aabb, EntityId, Model};
 
 use super::{Candidates, Joints, Side, Teller, sides};
 use crate::mesh::{Boundary, Mesh};
+use before::Before;
 pub use incidence::Incidence;
-use volume_sides::VolumeSides;
 
 /// Default tolerance, as a fraction of the mesh's bounding-box diagonal.
 pub const ON_CAD: f64 = 1e-5;
@@ -129,6 +130,20 @@ impl Doubt {
         if let Doubt::Beside { distance, .. } = self { Some(*distance) } else { None }
     }
 
+    /// What kind of doubt it is, in a few words.
+    #[must_use]
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Doubt::OffCad => "not on the CAD",
+            Doubt::PartlyOffCad => "partly off the CAD",
+            Doubt::Beside { .. } => "beside the CAD",
+            Doubt::NoCommonFace => "on no common CAD face",
+            Doubt::Several(_) => "on several CAD faces",
+            Doubt::Unfit(_) => "against the linkage file",
+            Doubt::NoEdge(_) => "along no CAD edge",
+        }
+    }
+
     /// What a user can do.
     #[must_use]
     pub fn remedy(&self) -> String {
@@ -177,14 +192,15 @@ impl Inference {
 pub fn infer(mesh: &Mesh, boundary: &Boundary, model: &Model, tolerance: &Tolerance) -> Inference {
     let joints = Joints::new(model);
     let sides = sides(mesh, boundary);
-    let within = |tolerance: &Tolerance, told: Option<&VolumeSides>| match boundary.plane {
-        Some(_) => in_plane::infer(mesh, boundary, model, &joints, &sides, tolerance),
-        None => infer_within(mesh, boundary, model, &joints, &sides, tolerance, told),
+    let part = Part { mesh, boundary, model, joints: &joints, sides: &sides };
+    let within = |tolerance: &Tolerance, before: Option<&Before>| match boundary.plane {
+        Some(_) => in_plane::infer(part, tolerance, before),
+        None => infer_within(part, tolerance, before),
     };
     let first = within(tolerance, None);
     let Some(wider) = tolerance.wider().filter(|_| !first.faces.is_empty()) else { return first };
-    let told = VolumeSides::of(&first.candidates.sheets, &joints, &sides);
-    let mut second = within(&wider, Some(&told));
+    let before = Before::of(&first.candidates.sheets, &joints, &sides);
+    let mut second = within(&wider, Some(&before));
     let more = first.faces.len().saturating_sub(second.faces.len());
     if more == 0 {
         return first;
@@ -197,18 +213,22 @@ pub fn infer(mesh: &Mesh, boundary: &Boundary, model: &Model, tolerance: &Tolera
     second
 }
 
-fn infer_within(
-    mesh: &Mesh,
-    boundary: &Boundary,
-    model: &Model,
-    joints: &Joints<'_>,
-    sides: &[Side],
-    tolerance: &Tolerance,
-    told: Option<&VolumeSides>,
-) -> Inference {
+/// What is associated, and with what.
+#[derive(Clone, Copy)]
+struct Part<'a> {
+    mesh: &'a Mesh,
+    boundary: &'a Boundary,
+    model: &'a Model,
+    joints: &'a Joints<'a>,
+    /// The geometry of the boundary faces.
+    sides: &'a [Side],
+}
+
+fn infer_within(part: Part<'_>, tolerance: &Tolerance, before: Option<&Before>) -> Inference {
+    let Part { mesh, boundary, model, joints, sides } = part;
     let incidence = Incidence::new(mesh, boundary, model, joints, tolerance);
     let along = incidence.along(mesh, boundary, model);
-    let decided = faces::decide(mesh, boundary, joints, &incidence, &along, sides, told);
+    let decided = faces::decide(part, &incidence, &along, before);
     let (classifications, mut doubts) = smooth_groups::join(boundary, model, joints, &incidence, sides, decided);
     near::find(model, boundary, mesh, sides, &classifications, &mut doubts);
     let mut candidates = Candidates {

@@ -15,10 +15,11 @@ use crate::cli::files::Files;
 use crate::cli::form::{self, Form};
 use crate::cli::output::{Beside, Failure, message, print, write_json};
 use crate::cli::{input, threads};
-use crate::curve::{Checkpointing, Curved, Job, Settings, Trace};
+use crate::curve::{Checkpointing, Curved, Job, Preview, Settings, Trace};
 use crate::element::Order;
-use crate::formats;
-use crate::report::{fields, report};
+use crate::formats::{self, Field, WriteOptions};
+use crate::mesh::{Inconsistent, Mesh};
+use crate::report::{fields, left_open, report, undecided};
 use crate::smooth;
 
 /// Options of `sagitta curve`.
@@ -49,6 +50,9 @@ pub(in crate::cli) struct Options {
     /// Also write the report as JSON
     #[arg(long, value_name = "R.json")]
     report: Option<PathBuf>,
+    /// Write the boundary faces that belong to the CAD and are not on it as a mesh to look at: a group a cause, and their distance
+    #[arg(long, value_name = "FILE.vtu")]
+    open_faces: Option<PathBuf>,
     #[command(flatten)]
     reading: Reading,
     /// Ignore the mesh's entity tags
@@ -151,6 +155,7 @@ impl Options {
             .reads("--resume", self.resume.as_ref())
             .writes_mesh(written(&self.output), self.form.solver())
             .writes("--report", self.report.as_ref())
+            .writes("--open-faces", self.open_faces.as_ref())
             .writes("--trace", written(&self.trace))
             .writes("--checkpoint", written(&self.checkpoint))
     }
@@ -197,7 +202,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     options.files().check()?;
     let job = options.job();
     let Some(output) = options.output.as_ref().filter(|_| !options.dry_run) else {
-        return dry_run(&job, options.report.as_deref());
+        return dry_run(&job, options);
     };
     let limit = options.time_limit.map(Duration::from_secs_f64);
     let mut monitor = Monitor::new(options.quiet).stoppable(limit);
@@ -220,6 +225,9 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let mut beside = Beside::default();
     beside.tell(kept);
     beside.tell(traced);
+    if let Some(path) = &options.open_faces {
+        beside.tell(write_left_open(path, left_open(&curved)));
+    }
     let report = report(&job, &curved);
     if let Some(path) = &options.report {
         beside.tell(write_json(path, &report));
@@ -254,14 +262,28 @@ fn is_all_on_cad(curved: &Curved) -> bool {
 }
 
 /// Prints which patches lie on which CAD faces.
-fn dry_run(job: &Job, report: Option<&Path>) -> Result<u8, Failure> {
-    let summary = job.association()?;
+fn dry_run(job: &Job, options: &Options) -> Result<u8, Failure> {
+    let Preview { summary, linear, boundary, open_faces } = job.association()?;
     let mut beside = Beside::default();
-    if let Some(path) = report {
+    if let Some(path) = &options.report {
         beside.tell(write_json(path, &summary));
+    }
+    if let Some(path) = &options.open_faces {
+        beside.tell(write_left_open(path, undecided(&linear, &boundary, &open_faces)));
     }
     beside.tell(print(&summary.to_string()));
     Ok(beside.exit_code(DONE))
+}
+
+/// Writes the faces that are not on the CAD, where there are any.
+fn write_left_open(path: &Path, faces: Result<(Mesh, Vec<Field>), Inconsistent>) -> Result<(), Failure> {
+    let (mesh, fields) = faces?;
+    if mesh.blocks().is_empty() {
+        message(format_args!("sagitta: {}: not written, as no boundary face is left open", path.display()));
+        return Ok(());
+    }
+    formats::write(path, &mesh, &WriteOptions { fields: &fields, ..WriteOptions::default() })?;
+    Ok(())
 }
 
 /// Writes the mesh; returns notes.

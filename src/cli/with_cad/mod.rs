@@ -8,6 +8,7 @@ mod points;
 mod progress;
 mod project;
 mod reading;
+mod room;
 mod spline;
 mod validate;
 mod values;
@@ -20,6 +21,7 @@ use super::help;
 use super::output::Failure;
 
 pub(super) use model::describe;
+pub(super) use room::Room;
 pub(super) use values::seconds;
 
 #[derive(Subcommand)]

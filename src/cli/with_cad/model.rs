@@ -60,6 +60,12 @@ fn flaws(text: &mut String, health: &Health) -> std::fmt::Result {
     for (face, fault) in &health.trims {
         writeln!(text, "  boundary of {face}: {fault}")?;
     }
+    for crease in &health.creases {
+        writeln!(text, "  {crease}")?;
+    }
+    for [one, other] in &health.duplicate_faces {
+        writeln!(text, "  {one} and {other} are the same face twice")?;
+    }
     for dropped in &health.dropped {
         writeln!(text, "  dropped by the reader: {dropped}")?;
     }

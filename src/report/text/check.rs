@@ -14,6 +14,10 @@ impl Display for CheckReport {
         }
         let scaled = self.certificate.scaled_jacobian;
         writeln!(f, "  smallest scaled Jacobian between {} and {}", number(scaled.lower), number(scaled.upper))?;
+        #[cfg(feature = "cad")]
+        if let Some(association) = &self.association {
+            writeln!(f, "{association}")?;
+        }
         for note in &self.notes {
             writeln!(f, "  note: {note}")?;
         }
