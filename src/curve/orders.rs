@@ -144,6 +144,9 @@ impl<'a> Continuation<'a> {
             }
             let mut smoothed = self.smoothed(&mut level, below.as_ref(), clock)?;
             let mut valid = smoothed.end.inverted == 0;
+            // An order that only had its share of the time is mended all the same, and the next one follows.
+            let ended = smoothed.stopped;
+            smoothed.stopped &= !clock.observer.may_recover();
             if !valid && !smoothed.stopped {
                 if std::mem::take(&mut skipped) {
                     below = self.made_again(order, clock.observer)?;
@@ -151,11 +154,11 @@ impl<'a> Continuation<'a> {
                 valid = recovers(&mut level, &mut smoothed, below.as_ref(), clock);
             }
             let Smoothed { sweeps, stopped, start, end, .. } = smoothed;
-            lower_orders.push(LowerOrder { order, sweeps, stopped, start, end });
+            lower_orders.push(LowerOrder { order, sweeps, stopped: stopped || ended, start, end });
             if valid {
                 below = Some(level.into());
             }
-            if stopped {
+            if stopped || (ended && !clock.observer.may_recover()) {
                 break;
             }
         }

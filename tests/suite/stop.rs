@@ -4,11 +4,13 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use crate::common::fixture;
 use crate::common::impatient::Impatient;
 use sagitta::certify::{self, Settings};
-use sagitta::curve::Job;
+use sagitta::curve::{Job, Observer};
 use sagitta::element::Order;
 use sagitta::formats;
+use sagitta::smooth::Progress;
 
 fn curve(out: &Path, more: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_sagitta"));
@@ -57,4 +59,31 @@ fn a_run_that_was_ended_at_a_lower_order_counts_as_ended() {
     let curved = job.run(&mut Impatient::new(2, 1)).unwrap();
     assert!(curved.lower_orders[0].stopped, "{:?}", curved.lower_orders);
     assert!(curved.smoothed.stopped && curved.certificate.holds());
+}
+
+/// Ends the smoothing at P2 at once, as that order's share of a time limit does, while there is time for the rest.
+struct ShareIsOver(Order);
+
+impl Observer for ShareIsOver {
+    fn order(&mut self, order: Order) {
+        self.0 = order;
+    }
+
+    fn progress(&mut self, _: &Progress) -> bool {
+        self.0.get() > 2
+    }
+
+    fn may_recover(&mut self) -> bool {
+        true
+    }
+}
+
+/// The order asked for is smoothed all the same, and the mesh is told to be stopped early.
+#[test]
+fn an_order_below_that_has_had_its_share_leaves_the_rest_to_the_next() {
+    let job = Job::new(fixture("weeble", "msh"), fixture("weeble", "step"), None, Order::new(3).unwrap());
+    let curved = job.run(&mut ShareIsOver(Order::LINEAR)).unwrap();
+    assert!(curved.is_certified() && curved.smoothed.stopped && curved.smoothed.sweeps > 1);
+    assert!(curved.lower_orders.len() == 1 && curved.lower_orders[0].stopped && curved.lower_orders[0].sweeps == 1);
+    assert!(curved.smoothed.end.c_jac > 0.75, "{:?}", curved.smoothed.end);
 }

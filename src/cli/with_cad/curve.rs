@@ -109,7 +109,7 @@ pub(in crate::cli) struct Options {
     keep_invalid: bool,
     #[command(flatten)]
     form: Form,
-    /// Seconds after which smoothing ends, at six tenths of them where elements are inverted, so that recovery has the rest; the mesh as it is then is certified and written
+    /// Seconds after which smoothing ends, at six tenths of them where elements are inverted, so that recovery has the rest; orders below end within their share of those; the mesh as it is then is certified and written
     #[arg(long, value_name = "S", value_parser = seconds)]
     time_limit: Option<f64>,
     /// Keep the state of the smoothing in this file, to resume from after a crash or the end of a job
@@ -205,7 +205,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
         return dry_run(&job, options);
     };
     let limit = options.time_limit.map(Duration::from_secs_f64);
-    let mut monitor = Monitor::new(options.quiet).stoppable(limit);
+    let mut monitor = Monitor::new(options.quiet).stoppable(limit, options.order);
     let mut trace = Trace::new(&mut monitor);
     let mut checkpointing = Checkpointing::new(&mut trace, options.checkpoint.clone(), options.checkpoint_every);
     let curved = job.run(&mut checkpointing);

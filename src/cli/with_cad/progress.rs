@@ -14,7 +14,8 @@ use crate::smooth::Progress;
 /// Plain lines come no more often than this.
 pub(super) const INTERVAL: Duration = Duration::from_secs(2);
 
-/// The share of a time limit after which smoothing ends while elements are inverted; the rest is left to recovery.
+/// The share of a time limit after which smoothing ends while elements are inverted; the rest is left to recovery. The orders below end, one
+/// after the other, within this share as well, so that the order asked for has its time.
 const SMOOTHING: f64 = 0.6;
 
 /// Why smoothing ended before it was done.
@@ -36,6 +37,8 @@ impl std::fmt::Display for Stop {
 /// Shows how the work goes on, and may end the smoothing on an interrupt or after a time limit.
 pub(super) struct Monitor {
     limit: Option<Duration>,
+    /// The order that is asked for, where there is a limit.
+    last_order: Option<Order>,
     /// Why smoothing was ended, once it was.
     pub(super) stop: Option<Stop>,
     bar: Option<ProgressBar>,
@@ -53,6 +56,7 @@ impl Monitor {
         let bar = (!quiet && std::io::stderr().is_terminal()).then(spinner);
         Monitor {
             limit: None,
+            last_order: None,
             stop: None,
             bar,
             quiet,
@@ -64,9 +68,18 @@ impl Monitor {
         }
     }
 
-    /// Ends smoothing after a time limit, too.
-    pub(super) fn stoppable(self, limit: Option<Duration>) -> Monitor {
-        Monitor { limit, ..self }
+    /// Ends smoothing after a time limit, too, and that at orders below `order` after their share of it.
+    pub(super) fn stoppable(self, limit: Option<Duration>, order: Order) -> Monitor {
+        Monitor { limit, last_order: Some(order), ..self }
+    }
+
+    /// The share of the time limit at which the order in work has to end its smoothing.
+    fn share(&self, inverted: usize) -> f64 {
+        let steps = |order: Option<Order>| order.map_or(1.0, |order| order.get().saturating_sub(1).max(1) as f64);
+        if self.order < self.last_order {
+            return SMOOTHING * steps(self.order) / steps(self.last_order);
+        }
+        if self.step == Some(Step::Smooth) && inverted > 0 { SMOOTHING } else { 1.0 }
     }
 
     /// Takes the live line away.
@@ -137,11 +150,12 @@ impl Observer for Monitor {
                 progress.inverted
             ));
         }
-        let share = if self.step == Some(Step::Smooth) && progress.inverted > 0 { SMOOTHING } else { 1.0 };
+        let share = self.share(progress.inverted);
         let is_over = |limit: &Duration| self.start.elapsed() >= limit.mul_f64(share);
         let over = self.limit.filter(is_over).map(Stop::TimeLimit);
-        self.stop = if signals::wished() { Some(Stop::Interrupted) } else { over };
-        self.stop.is_none()
+        let stop = if signals::wished() { Some(Stop::Interrupted) } else { over };
+        self.stop = stop.or(self.stop);
+        stop.is_none()
     }
 
     fn may_recover(&mut self) -> bool {

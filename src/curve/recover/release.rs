@@ -22,6 +22,10 @@ const DRAW: f64 = 0.5;
 const SHORTEST_DRAW: f64 = 0.1;
 /// Times that they are drawn at most.
 const DRAWS: usize = 6;
+/// Spots of released nodes, the farthest off first, that are drawn by themselves after that, and times that each is.
+const SPOTS: usize = 4;
+/// See [`SPOTS`].
+const SPOT_DRAWS: usize = 3;
 /// Released nodes that are no farther from their place than this share of their displacement are put back, fewer where that fails.
 const HARDLY: [f64; 3] = [0.5, 0.1, 0.02];
 
@@ -65,25 +69,61 @@ impl Recovery<'_, '_> {
         }
     }
 
-    /// Draws released nodes nearer to their places on the CAD, as far as the costs beside them stay good enough.
+    /// Draws released nodes nearer to their places on the CAD, as far as the costs beside them stay good enough: all together, then those of
+    /// the spots that are farthest off by themselves.
     fn draw(&mut self) {
+        let nodes: Vec<usize> = self.level.wall.released().collect();
+        self.draw_nodes(&nodes, DRAWS);
+        let mut spots = self.spots(&nodes);
+        if spots.len() < 2 {
+            return;
+        }
+        spots.sort_by(|a, b| self.farthest_off(b).total_cmp(&self.farthest_off(a)));
+        spots.iter().take(SPOTS).for_each(|spot| self.draw_nodes(spot, SPOT_DRAWS));
+    }
+
+    fn draw_nodes(&mut self, nodes: &[usize], draws: usize) {
         let own = &self.level.case.settings.smoothing;
         let settings = smooth::Settings { threshold: ENOUGH.min(own.threshold), ..self.closer() };
         let least = self.smoothed.end.worst().min(ENOUGH).max(self.floor());
         let mut step = DRAW;
-        for _ in 0..DRAWS {
+        for _ in 0..draws {
             if step < SHORTEST_DRAW || !self.proof.holds() || self.smoothed.stopped {
                 break;
             }
-            let nodes: Vec<usize> = self.level.wall.released().collect();
             let tried = self.attempt(least, |recovery| {
-                recovery.move_to_cad(&nodes, step);
+                recovery.move_to_cad(nodes, step);
                 recovery.smooth_again(&settings);
             });
             if tried.is_err() {
                 step *= DRAW;
             }
         }
+    }
+
+    /// Released nodes that hang together by wall faces.
+    fn spots(&self, nodes: &[usize]) -> Vec<Vec<usize>> {
+        let (boundary, mesh) = (self.level.case.boundary, self.level.mesh());
+        let mut spots: Vec<Vec<usize>> = Vec::new();
+        for face in 0..boundary.faces.len() {
+            let on_face = boundary.nodes(face, mesh).iter().map(|n| n.index());
+            let mut spot: Vec<usize> = on_face.filter(|n| nodes.binary_search(n).is_ok()).collect();
+            if spot.is_empty() {
+                continue;
+            }
+            let (near, apart) = spots.into_iter().partition(|own| own.iter().any(|n| spot.contains(n)));
+            spots = apart;
+            let near: Vec<Vec<usize>> = near;
+            spot.extend(near.into_iter().flatten());
+            spot.sort_unstable();
+            spot.dedup();
+            spots.push(spot);
+        }
+        spots
+    }
+
+    fn farthest_off(&self, nodes: &[usize]) -> f64 {
+        nodes.iter().map(|&n| self.level.curved[n].distance(self.level.displaced(n))).fold(0.0, f64::max)
     }
 
     /// Moves released nodes this share of their way to their places on the CAD, and carries the volume along.

@@ -16,6 +16,10 @@ use super::format::{Format, Holds, Reader, Writer};
 use super::loss::Loss;
 use crate::element::{Cell, Order};
 
+/// What is the same read and written.
+const HOLDS: Holds =
+    Holds { highest: Order::MAX, cells: &Cell::ALL, dimensions: &[2, 3], names: true, fields: false, notes: "" };
+
 /// The native format of the solver SU2.
 pub(super) static FORMAT: Format = Format {
     name: "SU2",
@@ -23,24 +27,16 @@ pub(super) static FORMAT: Format = Format {
     detect,
     reader: Some(Reader {
         holds: Holds {
-            highest: Order::MAX,
-            cells: &Cell::ALL,
-            dimensions: &[2, 3],
-            names: true,
-            fields: false,
             notes: "text; several zones, each with its own points; elements of higher order as SU2's finite-element solver \
                     writes them; FFD, periodic and send/receive sections passed over",
+            ..HOLDS
         },
         read: |input, _| file::read(input.content, input.length).map_err(|flaw| flaw.of(input.path)),
     }),
     writer: Some(Writer {
         holds: Holds {
-            highest: Order::MAX,
-            cells: &Cell::ALL,
-            dimensions: &[2, 3],
-            names: true,
-            fields: false,
             notes: "orders from 2 on as SU2's finite-element solver reads them; volumes that share no points as zones",
+            ..HOLDS
         },
         loses: &[
             Loss::Lower,
