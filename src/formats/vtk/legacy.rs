@@ -40,7 +40,7 @@ pub(super) fn read(input: impl BufRead, length: u64) -> Result<Mesh, Flaw> {
     let mut file = File {
         scanner,
         binary,
-        grid: Grid { old_hexes: version < 5.1, ..Grid::default() },
+        grid: Grid { old_hexes: Some(version < 5.1), ..Grid::default() },
         values_of: None,
         seen: Vec::new(),
     };
