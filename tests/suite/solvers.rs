@@ -256,6 +256,11 @@ fn mfem_meshes_that_cannot_be_read_are_refused() {
     };
     std::fs::write(&path, named(" 1 1") + points + "mfem_mesh_end\n").unwrap();
     assert_eq!(formats::read(&path).unwrap().notes(), [""; 0]);
+    let comment = |text: String| {
+        [&b"MFEM mesh v1.0\n#\xe9t\xe9\n"[..], text.trim_start_matches("MFEM mesh v1.0\n").as_bytes()].concat()
+    };
+    std::fs::write(&path, comment(head.to_owned() + points)).unwrap();
+    assert_eq!(formats::read(&path).unwrap().notes(), [""; 0]);
     std::fs::write(&path, named(" 1 1") + points).unwrap();
     assert!(formats::read(&path).unwrap().notes()[0].contains("no mfem_mesh_end"));
     for (text, what) in [

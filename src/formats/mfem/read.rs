@@ -77,13 +77,8 @@ impl<R: BufRead> File<R> {
 
     /// The next word that is not in a comment.
     fn word(&mut self, what: &'static str) -> Result<String, Flaw> {
-        loop {
-            let word = self.scanner.word(what)?.to_owned();
-            if !word.starts_with('#') {
-                return Ok(word);
-            }
-            self.scanner.rest_of_line()?;
-        }
+        self.scanner.past_comments()?;
+        Ok(self.scanner.word(what)?.to_owned())
     }
 
     fn keyword(&mut self, keyword: &'static str) -> Result<(), Flaw> {
@@ -221,20 +216,17 @@ impl<R: BufRead> File<R> {
     /// What stands behind the points: the mark of the end, or what joins the mesh to the parts of other processes. Numbers would be
     /// of the mesh. A note, where the mark is missing.
     fn end(&mut self, version: Version) -> Result<Option<String>, Flaw> {
-        while self.scanner.more()? {
-            let word = self.scanner.word("the end of the mesh")?;
-            match word.chars().next() {
-                Some('#') => self.scanner.rest_of_line()?,
-                _ if word == "mfem_mesh_end" => return Ok(None),
-                Some(first) if version == Version::Parallel && first.is_alphabetic() => return Ok(None),
-                _ => {
-                    let found = word.chars().take(40).collect();
-                    let what = "the end of the mesh (more numbers than announced?)";
-                    return Err(self.scanner.flaw(Fault::Unexpected { what, found }));
-                }
-            }
+        if !self.scanner.past_comments()? {
+            let note = "there is no mfem_mesh_end: the file may have been cut off";
+            return Ok((version == Version::Named).then(|| note.to_owned()));
         }
-        Ok((version == Version::Named).then(|| "there is no mfem_mesh_end: the file may have been cut off".to_owned()))
+        let word = self.scanner.word("the end of the mesh")?;
+        if word == "mfem_mesh_end" || version == Version::Parallel && word.starts_with(char::is_alphabetic) {
+            return Ok(None);
+        }
+        let found = word.chars().take(40).collect();
+        let what = "the end of the mesh (more numbers than announced?)";
+        Err(self.scanner.flaw(Fault::Unexpected { what, found }))
     }
 
     fn curved(

@@ -170,6 +170,10 @@ impl File<'_> {
                         _ => {}
                     }
                 }
+                // Behind a mark of the encoding at most.
+                Event::Decl(_) if self.place > 3 => {
+                    return Err(self.flaw(VtkFault::Xml("a declaration that does not stand first".into())));
+                }
                 Event::Decl(found) => well_formed::declaration(&found).map_err(|fault| self.flaw(fault))?,
                 // No program writes numbers so; left out they would be lost.
                 Event::CData(_) | Event::GeneralRef(_) if self.in_array() || self.has_no_text() => {

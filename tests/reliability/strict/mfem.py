@@ -9,22 +9,25 @@ def read(content, _):
     text = content.decode("latin-1")
     first, _, rest = text.partition("\n")
     refuse_unless(first.strip(" \t\r\f") == "MFEM mesh v1.0", "another version")
-    words = []
-    for line in rest.split("\n"):
-        # A comment begins with a word.
-        for word in split(line):
-            if word.startswith("#"):
-                break
-            words.append(word)
+    words = [(word, line) for line, text in enumerate(rest.split("\n")) for word in split(text)]
     at = 0
 
     def take():
         nonlocal at
         refuse_unless(at < len(words), "the file ends early")
         at += 1
-        return words[at - 1]
+        return words[at - 1][0]
+
+    def comments():
+        """Between sections alone: MFEM takes them for numbers elsewhere."""
+        nonlocal at
+        while at < len(words) and words[at][0].startswith("#"):
+            line = words[at][1]
+            while at < len(words) and words[at][1] == line:
+                at += 1
 
     def key(name):
+        comments()
         refuse_unless(take() == name, f"no {name}")
 
     def rows(own):
@@ -44,12 +47,14 @@ def read(content, _):
     sides = rows(dimension - 1)
     key("vertices")
     count = integer(take(), 0)
+    comments()
     axes = integer(take(), dimension, 3)
     mesh = Mesh()
     for _ in range(min(count, len(words))):
         mesh.points.append([real(take()) for _ in range(axes)] + [0.0] * (3 - axes))
     refuse_unless(len(mesh.points) == count, "the file ends early")
-    refuse_unless(words[at:] in ([], ["mfem_mesh_end"]), "more than announced")
+    comments()
+    refuse_unless(at == len(words) or take() == "mfem_mesh_end", "more than announced")
     for kind, nodes, attribute in cells + sides:
         mesh.add(kind, 1, nodes, attribute)
     return mesh

@@ -24,10 +24,7 @@ def read(content, _):
         appended, raw = content[mark + 1 :], b'"raw"' in content[start:tag]
         content = content[:start] + b"</VTKFile>"
     # Python does not know every encoding that a damaged declaration may name, and nothing that is used is not ASCII.
-    declaration = re.match(rb"<\?xml[^>]*\?>", content)
-    if declaration:
-        refuse_unless(declaration.group().isascii() and b"\x7f" not in declaration.group(), "no ASCII in the declaration")
-        content = content[declaration.end() :]
+    content = re.sub(rb"""\A(<\?xml version=(?:"1\.[01]"|'1\.[01]'))\s+encoding=(?:"[!-~]*"|'[!-~]*')(\s*\?>)""", rb"\1\2", content)
     try:
         root = xml.fromstring(content)
     except (xml.ParseError, LookupError, ValueError) as error:

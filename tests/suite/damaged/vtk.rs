@@ -28,6 +28,9 @@ fn legacy_vtk_counts_are_compared() {
     let twice =
         format!("{old}\n{}\n1 2 3\n", with(&line(&old, "POINTS "), " ", " 1 double x").split(" x").next().unwrap());
     place.refuses("twice.vtk", twice, &["POINTS occurs twice"]);
+    let row = line(&old, "SCALARS ");
+    place.refuses("scalars.vtk", with(&old, &row, &format!("{row} 1 1 1")), &["line", "a keyword"]);
+    place.refuses("table.vtk", with(&old, "LOOKUP_TABLE", "LOOKUP_TABLETABLE"), &["line", "expected LOOKUP_TABLE"]);
     // Metadata without end take no stack.
     let meta = format!("{old}\nFIELD f 1\n{}", "METADATA\n\n".repeat(200_000));
     place.refuses("meta.vtk", meta, &["ends inside a field's array"]);

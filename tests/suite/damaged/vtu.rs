@@ -73,6 +73,7 @@ fn damaged_tags_of_vtu_are_refused() {
         (" version=", "version=", "cannot be told apart"),
         ("<Points>", "<Points x=\"<\">", "XML is damaged"),
         ("<Points>", "<Points\u{1}>", "a character that no XML has"),
+        ("<Points>", "<?xml version=\"1.0\"?><Points>", "a declaration that does not stand first"),
         ("<Points>", "<Points>&amp;", "a reference or CDATA"),
         ("<Points>", "<Points>0.5", "expected a tag, found \"0.5\""),
         ("</VTKFile>", "</VTKFile><VTKFile></VTKFile>", "behind the end"),
