@@ -163,6 +163,18 @@ impl<R: BufRead> Scanner<R> {
         Ok(false)
     }
 
+    /// Whether a word follows outside of comments, which begin with `#` and end with their line, in whatever encoding; they are passed
+    /// over.
+    pub(super) fn past_comments(&mut self) -> Result<bool, Flaw> {
+        while self.more()? {
+            if self.peek()? != Some(b'#') {
+                return Ok(true);
+            }
+            self.rest_of_line()?;
+        }
+        Ok(false)
+    }
+
     /// The next word, parsed.
     pub(super) fn number<T: std::str::FromStr>(&mut self, what: &'static str) -> Result<T, Flaw> {
         if let Ok(value) = self.word(what)?.parse() {

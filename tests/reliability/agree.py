@@ -2,7 +2,7 @@
 
     python3 tests/reliability/agree.py ACCOUNT [--mutants 10000] [--only NAME] [--seed N] [--keep FOLDER]
 
-ACCOUNT is target/release/examples/account. Nothing but the standard library is needed. Ends with 1 where a file is accepted by one
+ACCOUNT is fuzz/target/release/account, which `make parsers` builds. Nothing but the standard library is needed. Ends with 1 where a file is accepted by one
 and refused by the other, or both read it and find other things.
 """
 
@@ -24,6 +24,7 @@ FORMATS = {
     "MSH 4.1": ["hexpyrtet_p1_msh41a.msh", "hexpyrtet_p3_msh41a.msh"],
     "SU2": ["hexpyrtet_p1.su2", "circle2d_p1.su2", "cylprism_p1.su2"],
     "GMF": ["hexpyrtet_p1.mesh"],
+    "MFEM": ["mfem_hexes_p1.mfem"],
     "UGRID": ["hexpyrtet_p1.ugrid", "hexpyrtet_p1.b8.ugrid", "hexpyrtet_p1.lb4.ugrid", "hexpyrtet_p1.lr8.ugrid", "hexpyrtet_p1.lb8l.ugrid"],
     "legacy VTK": ["hexpyrtet_p1.vtk", "hexpyrtet_p1_legacy51_ascii.vtk", "circle2d_p1.vtk"],
     "VTU": ["hexpyrtet_p1_ascii.vtu", "hexpyrtet_p1_app_raw.vtu", "hexpyrtet_p1_app_b64.vtu", "hexpyrtet_p1_app_raw_zlib.vtu", "hex_p3.vtu"],

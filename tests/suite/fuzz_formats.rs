@@ -5,13 +5,12 @@
 //! each, and so fewer by default.
 //! This test stands alone in its process: it reads the process' peak of address space.
 
-use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crate::common::random::Random;
+use crate::common::sound::sound;
 use sagitta::formats::{self, ReadOptions};
-use sagitta::mesh::Mesh;
 
 /// Mutations of each format; of CGNS.
 const MUTATIONS: [u64; 2] = [2_000, 100];
@@ -20,22 +19,6 @@ const ALLOWANCE_KB: u64 = 64 << 10;
 
 /// The longest that reading one file may take, on a machine that has other work too.
 const SLOWEST: Duration = Duration::from_secs(20);
-
-/// What holds of every mesh that was read, counted here once more: nodes are there, no cell is there twice, numbers and names are such.
-fn sound(mesh: &Mesh) {
-    assert!(mesh.blocks().iter().all(|b| b.nodes.iter().all(|n| n.index() < mesh.points().len())));
-    assert!(mesh.blocks().iter().all(|b| b.nodes.len() == b.tags.len() * b.stride(mesh.order())));
-    assert!(mesh.points().iter().all(|x| x.is_finite()));
-    let (mut corners, mut tags) = (HashSet::new(), HashSet::new());
-    for cell in mesh.cells().iter() {
-        let mut own: Vec<usize> = cell.corners().iter().map(|node| node.index()).collect();
-        own.sort_unstable();
-        assert!(corners.insert((cell.cell, own)), "cell {} is there twice", cell.tag);
-        assert!(tags.insert(cell.tag), "number {} is there twice", cell.tag);
-    }
-    let names = mesh.physical_names().iter().map(|group| &group.name);
-    assert!(names.chain(mesh.conditions().iter().map(|own| &own.name)).all(|name| !name.contains(['\n', '"', '\0'])));
-}
 
 /// Damages a file in one or two places.
 fn damage(content: &mut Vec<u8>, dice: &mut Random) {

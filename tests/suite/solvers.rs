@@ -249,12 +249,34 @@ fn mfem_meshes_that_cannot_be_read_are_refused() {
     assert_eq!(formats::read(&path).unwrap().counts()[&Cell::Tet], 1);
     let space =
         |name: &str| format!("nodes\nFiniteElementSpace\nFiniteElementCollection: {name}\nVDim: 3\nOrdering: 1\n");
+    let named = |set: &str| {
+        let sets =
+            format!("\nattribute_sets\n1\n\"a\"{set}\n\nboundary\n1\n1 2 0 1 2\nbdr_attribute_sets\n0\nvertices");
+        head.replace("v1.0", "v1.3").replace("\nboundary\n1\n1 2 0 1 2\nvertices", &sets)
+    };
+    std::fs::write(&path, named(" 1 1") + points + "mfem_mesh_end\n").unwrap();
+    assert_eq!(formats::read(&path).unwrap().notes(), [""; 0]);
+    let comment = |text: String| {
+        [&b"MFEM mesh v1.0\n#\xe9t\xe9\n"[..], text.trim_start_matches("MFEM mesh v1.0\n").as_bytes()].concat()
+    };
+    std::fs::write(&path, comment(head.to_owned() + points)).unwrap();
+    assert_eq!(formats::read(&path).unwrap().notes(), [""; 0]);
+    std::fs::write(&path, named(" 1 1") + points).unwrap();
+    assert!(formats::read(&path).unwrap().notes()[0].contains("no mfem_mesh_end"));
     for (text, what) in [
         ("MFEM NC mesh v1.0\n".to_owned(), "non-conforming"),
         ("MFEM NURBS mesh v1.0\n".to_owned(), "NURBS"),
         (head.replace("1 4 0", "0 4 0") + points, "attribute 0"),
         (head.replace("1 4 0 1 2 3", "1 9 0 1 2 3") + points, "geometry 9"),
-        (head.replace("0 1 2 3", "0 1 2 7") + points, "node 7"),
+        (head.replace("0 1 2 3", "0 1 2 7") + points, "element 1 refers to node 7"),
+        (head.to_owned() + &points.replacen('3', "2", 1), "2 coordinates, and the mesh is of dimension 3"),
+        (head.to_owned() + points + "0.5 0.5 0.5\n", "more numbers than announced"),
+        (
+            head.replace("vertices\n4", "vertices\n3").replace("0 1 2 3", "0 1 2 2") + points,
+            "more numbers than announced",
+        ),
+        (named(" 1 1 2") + points, "a set of attributes does not take one line"),
+        (named(" -1") + points, "a set of attributes does not take one line"),
         (head.replace("dimension\n3", "dimension\n1") + points, "dimension 1"),
         (head.to_owned() + "nodes\n", "cut off"),
         (head.replace("1 4 0 1 2 3", "1 4 0 1 2 2") + &space("H1_3D_P1"), "at two corners"),

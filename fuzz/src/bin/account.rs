@@ -1,4 +1,4 @@
-//! What sagitta makes of each file named on stdin, a line each: `ok` with figures and notes, or `no` with the refusal. For `parsers.py`,
+//! What sagitta makes of each file named on stdin, a line each: `ok` with figures and notes, or `no` with the refusal. For `agree.py`,
 //! whose own parsers count the same; a process for all files, as starting one takes longer than reading a small mesh.
 
 use std::collections::BTreeMap;

@@ -7,6 +7,10 @@ use crate::formats::error::{Flaw, Place};
 pub(super) enum CgnsFault {
     #[error("no {label} {name} in this node")]
     Missing { label: &'static str, name: &'static str },
+    #[error(
+        "no coordinate {name} among {found:?}; only Cartesian ones are read: export the mesh with CoordinateX, CoordinateY, CoordinateZ"
+    )]
+    Coordinates { name: &'static str, found: String },
     #[error("{0}")]
     Told(String),
     #[error("the file ends here, and its head says that it has {0} bytes: it was cut off; copy or write it again")]

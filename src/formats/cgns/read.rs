@@ -25,10 +25,11 @@ pub(super) fn mesh(tree: &Tree) -> Result<Mesh, Flaw> {
         Some(3) => 3,
         other => return Err(base.flaw(CgnsFault::Dimension(other.unwrap_or(0)))),
     };
+    let plane = dimensions.get(1) == Some(2);
     let mut zones = Vec::new();
     let mut start = 0;
     for node in base.all(labels::ZONE) {
-        let zone = zone(node, start)?;
+        let zone = zone(node, start, plane)?;
         start += zone.points.len();
         zones.push(zone);
     }
@@ -61,7 +62,8 @@ pub(super) fn mesh(tree: &Tree) -> Result<Mesh, Flaw> {
     assembly.finish().map_err(|fault| base.flaw(fault))
 }
 
-fn zone<'a>(tree: &'a Tree<'a>, start: usize) -> Result<Zone<'a>, Flaw> {
+/// A zone, whose nodes begin at `start`; in a plane they have no third coordinate.
+fn zone<'a>(tree: &'a Tree<'a>, start: usize, plane: bool) -> Result<Zone<'a>, Flaw> {
     let kind = tree.child(labels::ZONE_TYPE).map(Tree::text).unwrap_or_default();
     if kind != "Unstructured" {
         return Err(tree.flaw(CgnsFault::ZoneType(kind)));
@@ -71,9 +73,11 @@ fn zone<'a>(tree: &'a Tree<'a>, start: usize) -> Result<Zone<'a>, Flaw> {
     let mut points = Vec::new();
     for (axis, name) in ["CoordinateX", "CoordinateY", "CoordinateZ"].into_iter().enumerate() {
         let array = match coordinates.named(labels::ARRAY, name) {
-            // Plane meshes may lack the third.
-            None if axis == 2 => break,
-            None => return Err(coordinates.flaw(CgnsFault::Missing { label: labels::ARRAY, name })),
+            None if axis == 2 && plane => break,
+            None => {
+                let found: Vec<&str> = coordinates.all(labels::ARRAY).map(|array| array.name).collect();
+                return Err(coordinates.flaw(CgnsFault::Coordinates { name, found: found.join(", ") }));
+            }
             Some(array) => array,
         };
         let values = array.reals()?;

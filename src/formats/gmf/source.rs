@@ -50,11 +50,8 @@ impl<R: BufRead> Source<R> {
         let mut source =
             Source { scanner: Scanner::new(input, length), length, form, unknown: Vec::new(), ended: false };
         let what = "MeshVersionFormatted";
-        let mut word = source.scanner.word(what)?.to_owned();
-        while word.starts_with('#') {
-            source.scanner.rest_of_line()?;
-            word = source.scanner.word(what)?.to_owned();
-        }
+        source.scanner.past_comments()?;
+        let word = source.scanner.word(what)?.to_owned();
         let version = match word.strip_prefix(what) {
             Some("") => source.int("the version")?,
             Some(version) => version.parse().unwrap_or(0),
@@ -102,13 +99,9 @@ impl<R: BufRead> Source<R> {
     }
 
     fn word(&mut self) -> Result<Option<Keyword>, Flaw> {
-        while self.scanner.more()? {
+        while self.scanner.past_comments()? {
             let word = self.scanner.word("a keyword")?;
             let first = word.chars().next().unwrap_or_default();
-            if first == '#' {
-                self.scanner.rest_of_line()?;
-                continue;
-            }
             // A word of what is not read is mostly a number.
             let keyword = if first.is_alphabetic() { Keyword::of_word(word) } else { None };
             let found: String = word.chars().take(40).collect();
@@ -230,20 +223,14 @@ impl<R: BufRead> Source<R> {
 
     /// A word as a number; Fortran's `D` may stand for `E`.
     fn parsed<T: std::str::FromStr>(&mut self, what: &'static str) -> Result<T, Flaw> {
-        loop {
-            let word = self.scanner.word(what)?;
-            if let Ok(value) = word.parse() {
-                return Ok(value);
-            }
-            if let Ok(value) = word.replace(['D', 'd'], "E").parse() {
-                return Ok(value);
-            }
-            if !word.starts_with('#') {
-                let found = word.chars().take(40).collect();
-                return Err(self.flaw(Fault::Number { what, found }));
-            }
-            self.scanner.rest_of_line()?;
+        self.scanner.past_comments()?;
+        let word = self.scanner.word(what)?;
+        // Fortran's exponents too.
+        if let Ok(value) = word.parse().or_else(|_| word.replace(['D', 'd'], "E").parse()) {
+            return Ok(value);
         }
+        let found = word.chars().take(40).collect();
+        Err(self.flaw(Fault::Number { what, found }))
     }
 
     /// Says how many bits reals have in a binary file, whatever its version.

@@ -19,6 +19,8 @@ pub(super) enum MfemFault {
     Collection(String),
     #[error("the nodes have {0} coordinates; 2 and 3 are read")]
     VectorDimension(usize),
+    #[error("the nodes have {axes} coordinates, and the mesh is of dimension {dimension}: the file is damaged")]
+    Flat { axes: usize, dimension: usize },
     #[error("the ordering of the nodes is {0}, not 0 or 1")]
     Ordering(i64),
     #[error("an element has vertex {0} at two corners: remove the element, or write it as one with fewer corners")]

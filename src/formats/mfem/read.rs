@@ -38,6 +38,7 @@ pub(super) fn read(input: impl BufRead, length: u64) -> Result<Mesh, Flaw> {
     let [of_cells, of_sides] = [&cells, &sides].map(Elements::attributes);
     file.keyword("vertices")?;
     let mut assembly = file.geometry(dimension, cells, sides)?;
+    assembly.parts.notes.extend(file.end(version)?);
     for (attributes, dimension, sets) in [(of_cells, dimension, cell_sets), (of_sides, dimension - 1, side_sets)] {
         sets::group(&mut assembly, dimension as u8, &attributes, &sets);
     }
@@ -76,13 +77,8 @@ impl<R: BufRead> File<R> {
 
     /// The next word that is not in a comment.
     fn word(&mut self, what: &'static str) -> Result<String, Flaw> {
-        loop {
-            let word = self.scanner.word(what)?.to_owned();
-            if !word.starts_with('#') {
-                return Ok(word);
-            }
-            self.scanner.rest_of_line()?;
-        }
+        self.scanner.past_comments()?;
+        Ok(self.scanner.word(what)?.to_owned())
     }
 
     fn keyword(&mut self, keyword: &'static str) -> Result<(), Flaw> {
@@ -149,9 +145,12 @@ impl<R: BufRead> File<R> {
             if words.is_empty() {
                 words.push(self.scanner.word("a count")?.to_owned());
             }
-            let count = number(self, &words[0])?;
+            let Some(count) = usize::try_from(number(self, &words[0])?).ok().filter(|&count| words.len() <= count + 1)
+            else {
+                return Err(self.scanner.flaw(Fault::Row("a set of attributes")));
+            };
             let mut attributes = BTreeSet::new();
-            for place in 1..=usize::try_from(count).unwrap_or(0) {
+            for place in 1..=count {
                 let word = match words.get(place) {
                     Some(word) => word.clone(),
                     None => self.scanner.word("an attribute of a set")?.to_owned(),
@@ -166,10 +165,14 @@ impl<R: BufRead> File<R> {
     /// The points and elements, without groups.
     fn geometry(&mut self, dimension: usize, mut cells: Elements, mut sides: Elements) -> Result<Assembly, Flaw> {
         let vertices = self.count("vertices")?;
-        let mut corners = cells.corners.iter().chain(&sides.corners);
-        if let Some(node) = corners.find(|corner| corner.index() >= vertices) {
-            let (node, last) = (node.index() as i64, vertices as i64 - 1);
-            return Err(self.scanner.flaw(Fault::NodeRange { by: 0, node, first: 0, last }));
+        for elements in [&cells, &sides] {
+            let beyond =
+                |corners: &[NodeId]| corners.iter().map(|corner| corner.index()).find(|&node| node >= vertices);
+            let wrong = elements.iter().zip(1..).find_map(|((_, _, corners), by)| Some((by, beyond(corners)? as i64)));
+            if let Some((by, node)) = wrong {
+                let last = vertices as i64 - 1;
+                return Err(self.scanner.flaw(Fault::NodeRange { by, node, first: 0, last }));
+            }
         }
         let word = self.word("coordinates or nodes")?;
         if word != "nodes" {
@@ -179,6 +182,7 @@ impl<R: BufRead> File<R> {
                     .scanner
                     .flaw(Fault::Number { what: "the dimension of the space, 2 or 3", found: word }));
             };
+            self.compare(axes, dimension)?;
             let points = self.values(vertices, axes, true)?;
             let mut assembly = Assembly::new(points).map_err(|fault| self.scanner.flaw(fault))?;
             for (elements, dimension) in [(&cells, dimension), (&sides, dimension - 1)] {
@@ -189,6 +193,7 @@ impl<R: BufRead> File<R> {
             return Ok(assembly);
         }
         let (space, axes, by_point) = self.space(&cells)?;
+        self.compare(axes, dimension)?;
         let twice = cells.iter().chain(sides.iter()).find_map(|(_, _, corners)| repeated(corners));
         if let Some(vertex) = twice {
             return Err(self.scanner.flaw(MfemFault::Collapsed(vertex)));
@@ -198,6 +203,30 @@ impl<R: BufRead> File<R> {
         let values = self.values(layout.count(), axes, by_point)?;
         let placed = layout.place(&values, &cells, &sides).map_err(|fault| self.scanner.flaw(fault))?;
         self.curved(placed, dimension, space.order, [&cells, &sides])
+    }
+
+    /// Refuses fewer coordinates than the mesh has dimensions.
+    fn compare(&self, axes: usize, dimension: usize) -> Result<(), Flaw> {
+        if axes < dimension {
+            return Err(self.scanner.flaw(MfemFault::Flat { axes, dimension }));
+        }
+        Ok(())
+    }
+
+    /// What stands behind the points: the mark of the end, or what joins the mesh to the parts of other processes. Numbers would be
+    /// of the mesh. A note, where the mark is missing.
+    fn end(&mut self, version: Version) -> Result<Option<String>, Flaw> {
+        if !self.scanner.past_comments()? {
+            let note = "there is no mfem_mesh_end: the file may have been cut off";
+            return Ok((version == Version::Named).then(|| note.to_owned()));
+        }
+        let word = self.scanner.word("the end of the mesh")?;
+        if word == "mfem_mesh_end" || version == Version::Parallel && word.starts_with(char::is_alphabetic) {
+            return Ok(None);
+        }
+        let found = word.chars().take(40).collect();
+        let what = "the end of the mesh (more numbers than announced?)";
+        Err(self.scanner.flaw(Fault::Unexpected { what, found }))
     }
 
     fn curved(

@@ -29,6 +29,12 @@ pub(super) enum VtkFault {
     Expanded { announced: u64, limit: u64 },
     #[error("{0} bytes follow the values of an array that stands in place: the file is damaged")]
     Leftover(usize),
+    #[error("an array is of bytes, and the file does not say their order (byte_order of VTKFile)")]
+    ByteOrder,
+    #[error(
+        "cell {tag} is a Lagrange hex, whose order of nodes depends on the version, and the file says none (version of VTKFile)"
+    )]
+    NoVersion { tag: u64 },
     #[error("the XML is damaged: {0}")]
     Xml(String),
 }

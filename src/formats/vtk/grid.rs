@@ -31,8 +31,8 @@ pub(super) struct Grid {
     pub(super) arrays: BTreeMap<String, Vec<i64>>,
     /// Names of such arrays whose numbers are not all whole.
     pub(super) unusable: Vec<String>,
-    /// Whether the file is of a version in which two edges of Lagrange hexes stood the other way round.
-    pub(super) old_hexes: bool,
+    /// Whether the file is of a version in which two edges of Lagrange hexes stood the other way round, where it says its version.
+    pub(super) old_hexes: Option<bool>,
 }
 
 impl Grid {
@@ -52,8 +52,11 @@ impl Grid {
         }
     }
 
-    /// Refuses arrays that do not fit each other.
-    fn compare(&self) -> Result<(), Fault> {
+    /// Refuses arrays that do not fit each other, as they must where a piece ends.
+    ///
+    /// # Errors
+    /// A [`Fault`] of their lengths.
+    pub(super) fn compare(&self) -> Result<(), Fault> {
         let cells = self.types.len();
         if self.offsets.len() != cells {
             let (announced, found) = (cells as u64, self.offsets.len() as u64);
@@ -68,7 +71,7 @@ impl Grid {
             return Err(Fault::Truncated("the points"));
         }
         for (name, values) in &self.arrays {
-            if values.len() != cells {
+            if values.len() != cells && !self.unusable.contains(name) {
                 return Err(VtkFault::ArrayLength { name: name.clone(), found: values.len(), cells }.into());
             }
         }
@@ -80,9 +83,9 @@ impl Grid {
     /// # Errors
     /// A [`Fault`] of the arrays.
     pub(super) fn mesh(mut self) -> Result<Mesh, Fault> {
+        self.compare()?;
         let unusable = std::mem::take(&mut self.unusable);
         unusable.iter().for_each(|name| drop(self.arrays.remove(name)));
-        self.compare()?;
         let cells = self.types.len();
         let points = self.points.chunks_exact(3).map(DVec3::from_slice).collect();
         let mut assembly = Assembly::new(points)?;
@@ -141,7 +144,8 @@ impl Grid {
         assembly.set_order(cell, order)?;
         // The order of VTK's quadratic cells is that of the Lagrange cells, and has been the same in all versions.
         let lagrange = i64::from(type_code::LAGRANGE_HEX) == code;
-        let file_order = if self.old_hexes && lagrange { &BEFORE_21 } else { &ORDER };
+        let old = lagrange && self.old_hexes.ok_or(VtkFault::NoVersion { tag })?;
+        let file_order = if old { &BEFORE_21 } else { &ORDER };
         let slots = file_order.slots(cell, order).unwrap_or_default();
         nodes.clear();
         nodes.resize(numbers.len(), NodeId::default());

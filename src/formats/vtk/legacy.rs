@@ -40,7 +40,7 @@ pub(super) fn read(input: impl BufRead, length: u64) -> Result<Mesh, Flaw> {
     let mut file = File {
         scanner,
         binary,
-        grid: Grid { old_hexes: version < 5.1, ..Grid::default() },
+        grid: Grid { old_hexes: Some(version < 5.1), ..Grid::default() },
         values_of: None,
         seen: Vec::new(),
     };
@@ -104,12 +104,9 @@ impl<R: BufRead> File<R> {
                 self.compare("points (POINT_DATA)", count, self.grid.points.len() / 3)?;
                 self.values_of = Some(Support::Points(count));
             }
-            ["SCALARS", name, kind, ref rest @ ..] => {
+            ["SCALARS", name, kind, ref rest @ ..] if rest.len() < 2 => {
                 let components = rest.first().map_or(Ok(1), |word| self.count(word))?;
-                let table = self.scanner.full_line("LOOKUP_TABLE")?;
-                if !table.starts_with("LOOKUP_TABLE") {
-                    return Err(unexpected(&self.scanner, "LOOKUP_TABLE", &table));
-                }
+                self.typed("LOOKUP_TABLE")?;
                 self.attribute(name, kind, components)?;
             }
             ["VECTORS" | "NORMALS", name, kind] => self.attribute(name, kind, 3)?,
@@ -183,7 +180,7 @@ impl<R: BufRead> File<R> {
         self.compare("cells (CELLS)", count, self.grid.offsets.len())
     }
 
-    /// The type in a line `NAME type`.
+    /// The type in a line `NAME type`, or the name in one like it.
     fn typed(&mut self, name: &'static str) -> Result<String, Flaw> {
         let line = self.scanner.full_line(name)?;
         match line.split_whitespace().collect::<Vec<_>>()[..] {

@@ -2,11 +2,14 @@
 
 mod array;
 mod compressed;
+mod encoded;
 mod fault;
 mod grid;
+mod header;
 mod legacy;
 pub(super) mod node_order;
 pub(super) mod type_code;
+mod well_formed;
 mod write;
 mod xml;
 

@@ -2,15 +2,16 @@
 
 use std::borrow::Cow;
 
-use base64::Engine;
-use base64::engine::{GeneralPurpose, GeneralPurposeConfig};
 use quick_xml::Reader;
+use quick_xml::escape::resolve_xml_entity;
 use quick_xml::events::{BytesStart, Event};
 
 use super::array::{Number, Values};
-use super::compressed::Compressor;
+use super::encoded::Source;
 use super::fault::VtkFault;
 use super::grid::Grid;
+use super::header::Header;
+use super::well_formed;
 use crate::formats::error::{Fault, Flaw, Place};
 use crate::mesh::Mesh;
 
@@ -21,6 +22,7 @@ use crate::mesh::Mesh;
 pub(super) fn read(content: &[u8], memory: u64) -> Result<Mesh, Flaw> {
     let (head, appended) = split(content)?;
     let room = ROOM.saturating_add((content.len() as u64).saturating_mul(EXPANSION)).min(memory);
+    well_formed::characters(head)?;
     let mut file = File { appended, room, ..File::default() };
     file.parse(head)?;
     // The tag of the appended data stands within the outermost element.
@@ -28,7 +30,8 @@ pub(super) fn read(content: &[u8], memory: u64) -> Result<Mesh, Flaw> {
     if file.open.len() > open {
         return Err(file.flaw(Fault::Truncated("the XML")));
     }
-    file.grid.mesh().map_err(|fault| Flaw::new(Place::Byte(0), fault))
+    let end = Place::Byte(file.place);
+    file.grid.mesh().map_err(|fault| Flaw::new(end, fault))
 }
 
 /// Bytes that the numbers of a file may take in memory, as 8 each, and how many more for each byte of the file: compressed arrays
@@ -106,9 +109,7 @@ impl Piece {
 #[derive(Default)]
 struct File<'a> {
     appended: Appended<'a>,
-    big_endian: bool,
-    long_headers: bool,
-    compressor: Option<Compressor>,
+    header: Header,
     grid: Grid,
     piece: Piece,
     /// Bytes that numbers may still take.
@@ -152,7 +153,7 @@ impl File<'_> {
                 }
                 Event::Text(text) => {
                     // Text within an InformationKey of an array is none of its values.
-                    if self.open.last().is_some_and(|name| name == "DataArray")
+                    if self.in_array()
                         && let Some(array) = &mut self.array
                     {
                         array.text.extend_from_slice(text.as_bytes());
@@ -169,10 +170,27 @@ impl File<'_> {
                         _ => {}
                     }
                 }
+                // Behind a mark of the encoding at most.
+                Event::Decl(_) if self.place > 3 => {
+                    return Err(self.flaw(VtkFault::Xml("a declaration that does not stand first".into())));
+                }
+                Event::Decl(found) => well_formed::declaration(&found).map_err(|fault| self.flaw(fault))?,
+                // No program writes numbers so; left out they would be lost.
+                Event::CData(_) | Event::GeneralRef(_) if self.in_array() || self.has_no_text() => {
+                    return Err(self.flaw(VtkFault::Xml("a reference or CDATA where there is none".into())));
+                }
+                Event::GeneralRef(name) if !name.is_char_ref() && resolve_xml_entity(&name).is_none() => {
+                    return Err(self.flaw(VtkFault::Xml("a reference to nothing".into())));
+                }
                 Event::Eof => return Ok(()),
                 _ => {}
             }
         }
+    }
+
+    /// Whether the element that is open is an array itself, and not within one.
+    fn in_array(&self) -> bool {
+        self.open.last().is_some_and(|name| name == "DataArray")
     }
 
     /// Whether the element that is open holds elements alone; so does the file itself.
@@ -181,13 +199,12 @@ impl File<'_> {
         self.open.last().is_none_or(|name| known.contains(&name.as_str()))
     }
 
-    /// Refuses a tag whose attributes cannot be told apart: one that is not found would be taken as not given. There is one root.
+    /// Refuses a tag that is none, and a second root.
     fn check(&self, start: &BytesStart) -> Result<(), Flaw> {
         if self.root && self.open.is_empty() {
             return Err(self.flaw(VtkFault::Xml("an element behind the end".into())));
         }
-        let wrong = start.attributes().find_map(Result::err);
-        wrong.map_or(Ok(()), |error| Err(self.flaw(VtkFault::Xml(error.to_string()))))
+        well_formed::tag(start).map_err(|fault| self.flaw(fault))
     }
 
     fn start(&mut self, start: &BytesStart) -> Result<(), Flaw> {
@@ -197,15 +214,8 @@ impl File<'_> {
         };
         match start.local_name().as_ref().as_bytes() {
             b"VTKFile" => {
-                self.big_endian = text("byte_order").as_deref() == Some("BigEndian");
-                self.long_headers = text("header_type").as_deref() == Some("UInt64");
-                let version = text("version").unwrap_or_default();
-                let mut parts = version.split('.').map(|part| part.parse::<u32>().unwrap_or(0));
-                self.grid.old_hexes = (parts.next().unwrap_or(0), parts.next().unwrap_or(0)) < (2, 1);
-                if let Some(name) = text("compressor") {
-                    let known = Compressor::of(&name).ok_or(VtkFault::Compressed(format!("{name} is not known")));
-                    self.compressor = Some(known.map_err(|fault| self.flaw(fault))?);
-                }
+                self.header = Header::new(text).map_err(|fault| self.flaw(fault))?;
+                self.grid.old_hexes = self.header.version.map(|version| version < (2, 1));
             }
             b"Piece" => {
                 let count = |what: &'static str| -> Result<Option<u64>, Flaw> {
@@ -302,7 +312,8 @@ impl File<'_> {
         compare("cells of a piece", cells, grid.types.len() - cells_before)?;
         compare("ends of cells of a piece", cells, grid.offsets.len().saturating_sub(cells_before))?;
         let nodes = grid.offsets[cells_before.min(grid.offsets.len())..].last().map_or(nodes_before as i64, |&end| end);
-        compare("nodes of cells of a piece", u64::try_from(nodes).ok(), grid.connectivity.len())
+        compare("nodes of cells of a piece", u64::try_from(nodes).ok(), grid.connectivity.len())?;
+        grid.compare().map_err(|fault| self.flaw(fault))
     }
 
     fn values(&mut self, array: &Array) -> Result<Values, Flaw> {
@@ -322,6 +333,9 @@ impl File<'_> {
             }
             _ => (array.text.trim_ascii(), false, Place::Byte(self.place)),
         };
+        let Some(big_endian) = self.header.big_endian else {
+            return Err(Flaw::new(place, VtkFault::ByteOrder));
+        };
         let mut source = Source { bytes, raw };
         let width = array.number.width() as u64;
         let room = self.room / 8 * width;
@@ -330,7 +344,7 @@ impl File<'_> {
         if array.form == Form::Inline && !source.bytes.is_empty() {
             return Err(Flaw::new(place, VtkFault::Leftover(source.bytes.len())));
         }
-        let decoded = array.number.decode(&decoded, self.big_endian, &mut values);
+        let decoded = array.number.decode(&decoded, big_endian, &mut values);
         decoded.map_err(|fault| Flaw::new(place, fault))?;
         self.room = self.room.saturating_sub(8 * values.len() as u64);
         Ok(values)
@@ -338,8 +352,8 @@ impl File<'_> {
 
     /// The bytes of an array behind their header; `limit` of them at most where they are compressed.
     fn content<'s>(&self, source: &mut Source<'s>, limit: u64) -> Result<Cow<'s, [u8]>, Fault> {
-        let width = if self.long_headers { 8 } else { 4 };
-        let Some(compressor) = self.compressor else {
+        let width = if self.header.long_lengths { 8 } else { 4 };
+        let Some(compressor) = self.header.compressor else {
             return source.counted(width, |header| self.number(header));
         };
         // The header's length is not known before its first number; base64 encodes it apart from the blocks.
@@ -372,7 +386,7 @@ impl File<'_> {
     /// A header's number.
     fn number(&self, bytes: &[u8]) -> u64 {
         let mut wide = [0; 8];
-        if self.big_endian {
+        if self.header.big_endian == Some(true) {
             wide[8 - bytes.len()..].copy_from_slice(bytes);
             u64::from_be_bytes(wide)
         } else {
@@ -390,54 +404,4 @@ fn wanted(section: &str, name: &str, components: u64) -> bool {
         "CellData" => components == 1 && Grid::wants(name),
         _ => false,
     }
-}
-
-/// Bytes as they are or in base64, from the front.
-struct Source<'a> {
-    bytes: &'a [u8],
-    raw: bool,
-}
-
-impl<'a> Source<'a> {
-    /// The next bytes, which stay.
-    fn peek(&self, count: usize) -> Result<Vec<u8>, Fault> {
-        Ok(Source { ..*self }.take(count)?.into_owned())
-    }
-
-    /// The next bytes; in base64 a group of their own, padded to whole quadruples.
-    fn take(&mut self, count: usize) -> Result<Cow<'a, [u8]>, Fault> {
-        let cut = || Fault::Truncated("an array");
-        if self.raw {
-            return Ok(self.bytes.split_off(..count).ok_or_else(cut)?.into());
-        }
-        let length = count.div_ceil(3).checked_mul(4).ok_or_else(cut)?;
-        let quads = self.bytes.split_off(..length).ok_or_else(cut)?;
-        let mut bytes = decode(quads)?;
-        if bytes.len() < count {
-            return Err(cut());
-        }
-        bytes.truncate(count);
-        Ok(bytes.into())
-    }
-
-    /// The bytes behind a header that counts them.
-    fn counted(&mut self, width: usize, number: impl Fn(&[u8]) -> u64) -> Result<Cow<'a, [u8]>, Fault> {
-        let cut = || Fault::Truncated("an array");
-        let count = number(&self.peek(width)?);
-        let count = usize::try_from(count).map_err(|_| cut())?;
-        let whole = self.take(count.checked_add(width).ok_or_else(cut)?)?;
-        Ok(match whole {
-            Cow::Borrowed(bytes) => bytes[width..].into(),
-            Cow::Owned(mut bytes) => bytes.split_off(width).into(),
-        })
-    }
-}
-
-/// Base64 of which only the beginning may be asked for: what stands behind the padding is not looked at.
-fn decode(quads: &[u8]) -> Result<Vec<u8>, Fault> {
-    let end = quads.chunks_exact(4).position(|quad| quad[3] == b'=').map_or(quads.len(), |n| 4 * n + 4);
-    let damaged = |error: base64::DecodeError| VtkFault::Compressed(error.to_string());
-    let bits = GeneralPurposeConfig::new().with_decode_allow_trailing_bits(true);
-    let engine = GeneralPurpose::new(&base64::alphabet::STANDARD, bits);
-    Ok(engine.decode(&quads[..end]).map_err(damaged)?)
 }

@@ -3,10 +3,10 @@
 `read(path)` gives a `Mesh` or raises `Refused`. Only the forms of the samples that `agree.py` takes are known.
 """
 
-from . import gmf, msh, su2, ugrid, vtk, vtu
+from . import gmf, mfem, msh, su2, ugrid, vtk, vtu
 from .mesh import Mesh, Refused
 
-READERS = {"msh": msh.read, "su2": su2.read, "mesh": gmf.read, "ugrid": ugrid.read, "vtk": vtk.read, "vtu": vtu.read}
+READERS = {"msh": msh.read, "su2": su2.read, "mesh": gmf.read, "mfem": mfem.read, "ugrid": ugrid.read, "vtk": vtk.read, "vtu": vtu.read}
 
 
 def read(path):

@@ -11,6 +11,7 @@ from .mesh import Mesh, integer, real, refuse_unless
 from .vtk import add_cells
 
 NUMBERS = {"Int8": "b", "UInt8": "B", "Int16": "h", "UInt16": "H", "Int32": "i", "UInt32": "I", "Int64": "q", "UInt64": "Q", "Float32": "f", "Float64": "d"}
+LAGRANGE_HEX = 72
 
 
 def read(content, _):
@@ -22,15 +23,19 @@ def read(content, _):
         refuse_unless(tag >= 0 and mark >= 0, "appended data without a beginning")
         appended, raw = content[mark + 1 :], b'"raw"' in content[start:tag]
         content = content[:start] + b"</VTKFile>"
-    # The declaration says nothing that is used: no parser of VTU looks at the encoding.
-    content = re.sub(rb"<\?xml[^>]*\?>", b"", content)
+    # Python does not know every encoding that a damaged declaration may name, and nothing that is used is not ASCII.
+    content = re.sub(rb"""\A(<\?xml version=(?:"1\.[01]"|'1\.[01]'))\s+encoding=(?:"[!-~]*"|'[!-~]*')(\s*\?>)""", rb"\1\2", content)
     try:
         root = xml.fromstring(content)
     except (xml.ParseError, LookupError, ValueError) as error:
         refuse_unless(False, f"no XML: {error}")
     refuse_unless(root.tag == "VTKFile" and root.get("type") == "UnstructuredGrid", "no unstructured grid")
     refuse_unless(root.get("compressor") in (None, "vtkZLibDataCompressor"), "a compressor that this parser does not know")
-    order = ">" if root.get("byte_order") == "BigEndian" else "<"
+    refuse_unless(root.get("byte_order") in (None, "LittleEndian", "BigEndian"), "an order of bytes that is none")
+    refuse_unless(root.get("header_type") in (None, "UInt32", "UInt64"), "lengths that are none")
+    version = root.get("version")
+    refuse_unless(version is None or re.match(r"\s*[0-9]+(\.[0-9]+)?\s*\Z", version), "a version that is none")
+    order = {None: None, "LittleEndian": "<", "BigEndian": ">"}[root.get("byte_order")]
     file = (order, "Q" if root.get("header_type") == "UInt64" else "I", root.get("compressor"), appended, raw)
     for tag in ("VTKFile", "UnstructuredGrid", "Piece", "Points", "Cells", "CellData", "PointData"):
         for element in root.iter(tag):
@@ -57,6 +62,8 @@ def read(content, _):
         if array.get("Name") == "CellEntityIds" and array.get("NumberOfComponents", "1") == "1":
             refuse_unless(entities is None, "CellEntityIds twice")
             entities = values(array, file, integer)
+    # The order of a Lagrange hex' nodes changed with version 2.1.
+    refuse_unless(version is not None or LAGRANGE_HEX not in arrays["types"], "hexes without a version")
     add_cells(mesh, arrays["connectivity"], arrays["offsets"], arrays["types"], entities)
     return mesh
 
@@ -68,7 +75,8 @@ def values(array, file, parse):
         return [parse(word) for word in (array.text or "").split()]
     refuse_unless(form == "appended", f"the form {form}")
     order, header, compressor, appended, raw = file
-    start = integer(array.get("offset", ""), 0)
+    refuse_unless(order, "bytes without their order")
+    start = integer(array.get("offset", "").strip(), 0)
     refuse_unless(start <= len(appended), "an offset beyond the file")
     data = block(appended[start:], order, header, compressor, raw)
     size = struct.calcsize(NUMBERS[kind])

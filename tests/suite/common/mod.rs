@@ -20,6 +20,7 @@ pub mod input;
 pub mod linkage;
 pub mod measure;
 pub mod random;
+pub mod sound;
 pub mod ugrid;
 
 pub use documents::json;
