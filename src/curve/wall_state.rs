@@ -39,6 +39,8 @@ pub struct Wall {
     off_cad: BTreeMap<usize, OffCad>,
     /// Nodes that are not held on the CAD, but drawn to their place there.
     released: BTreeSet<usize>,
+    /// Those of them that stay where they are for now.
+    held: BTreeSet<usize>,
     /// How many closest points were asked for to place nodes.
     pub queries: usize,
     /// How many of them are not proven to be the closest.
@@ -162,6 +164,17 @@ impl Wall {
     /// Holds a released node on the CAD again.
     pub fn reattach(&mut self, node: usize) {
         self.released.remove(&node);
+    }
+
+    /// Holds released nodes where they are, and no others.
+    pub fn hold(&mut self, nodes: &[usize]) {
+        self.held = nodes.iter().copied().collect();
+    }
+
+    /// Whether a released node stays where it is.
+    #[must_use]
+    pub fn is_held(&self, node: usize) -> bool {
+        self.held.contains(&node)
     }
 
     /// Nodes that may leave the CAD, rising.

@@ -93,7 +93,9 @@ impl Recovery<'_, '_> {
             }
             let tried = self.attempt(least, |recovery| {
                 recovery.move_to_cad(nodes, step);
+                recovery.level.wall.hold(nodes); // left to themselves they may go back, or farther
                 recovery.smooth_again(&settings);
+                recovery.level.wall.hold(&[]);
             });
             if tried.is_err() {
                 step *= DRAW;

@@ -74,7 +74,7 @@ impl CadConstraint<'_> {
         let (n, Case { settings, association, .. }) = (node.index(), self.case);
         let classification = self.wall.classification(n);
         let frozen = settings.freeze_linear && n < self.linear_nodes;
-        if frozen || self.wall.fraction(n) < 1.0 || self.held.contains(&node) {
+        if frozen || self.wall.fraction(n) < 1.0 || self.wall.is_held(n) || self.held.contains(&node) {
             return Freedom::Fixed;
         }
         if classification == Classification::Free || self.wall.is_released(n) {
