@@ -22,6 +22,9 @@ pub struct Summary {
     pub schema: &'static str,
     /// Where the association comes from.
     pub source: String,
+    /// Whether the mesh is a plane one: what is called a face here is an edge then.
+    #[serde(skip)]
+    pub in_plane: bool,
     /// By boundary entity of the mesh.
     pub patches: Vec<Patch>,
     /// Mesh edges that are associated with CAD edges.
@@ -147,6 +150,7 @@ pub fn summary(
     Summary {
         schema: SUMMARY_SCHEMA,
         source: source.to_owned(),
+        in_plane: boundary.plane.is_some(),
         patches: patches.into_values().collect(),
         edges: candidates.strings.iter().filter(|s| !s.entities.is_empty()).map(|s| s.items.len()).sum(),
         points: candidates.points.iter().filter(|p| !p.entities.is_empty()).map(|p| p.items.len()).sum(),

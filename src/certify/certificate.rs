@@ -84,6 +84,13 @@ pub fn mesh(mesh: &Mesh, positions: &[DVec3], linear_corners: Option<&[DVec3]>, 
     Certificate { normal: elements.normal(), ..certify(&elements, settings) }
 }
 
+/// Certifies a mesh of faces on curved surfaces with its nodes at `positions`, each against the mean normal of its linear face, whose corners
+/// are those of `linear`, the points of the linear nodes before they were moved.
+#[must_use]
+pub fn surface(mesh: &Mesh, positions: &[DVec3], linear: &[DVec3], settings: &Settings) -> Certificate {
+    certify(&MeshElements::of_surface(mesh, positions, linear), settings)
+}
+
 /// Certifies all elements of a source. The certificate does not depend on the number of threads.
 #[must_use]
 pub fn certify(elements: &impl Elements, settings: &Settings) -> Certificate {

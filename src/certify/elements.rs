@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::mean_normal;
 use crate::element::{Cell, Order};
 use crate::mesh::{self, ElementId, Mesh};
 
@@ -39,6 +40,8 @@ pub struct MeshElements<'a> {
     unperturbed: Option<&'a [DVec3]>,
     /// That of a plane mesh.
     normal: Option<DVec3>,
+    /// Whether every face is judged against its own mean normal.
+    by_face: bool,
 }
 
 impl<'a> MeshElements<'a> {
@@ -49,7 +52,14 @@ impl<'a> MeshElements<'a> {
     #[must_use]
     pub fn new(mesh: &'a Mesh, positions: &'a [DVec3], unperturbed: Option<&'a [DVec3]>) -> MeshElements<'a> {
         let normal = mesh.plane(positions).map(|plane| plane.normal);
-        MeshElements { cells: mesh.cells(), positions, unperturbed, normal }
+        MeshElements { cells: mesh.cells(), positions, unperturbed, normal, by_face: false }
+    }
+
+    /// The faces of a mesh without a volume, each judged against the mean normal of its linear face; `linear` are the points of the linear
+    /// nodes before they were moved.
+    #[must_use]
+    pub fn of_surface(mesh: &'a Mesh, positions: &'a [DVec3], linear: &'a [DVec3]) -> MeshElements<'a> {
+        MeshElements { cells: mesh.cells(), positions, unperturbed: Some(linear), normal: None, by_face: true }
     }
 
     /// The unit normal of a plane mesh.
@@ -78,7 +88,7 @@ impl Elements for MeshElements<'_> {
         if let Some(points) = self.unperturbed {
             into.corners.extend(element.corners().iter().map(|n| points[n.index()]));
         }
-        into.normal = self.normal;
+        into.normal = if self.by_face { Some(mean_normal(&into.corners)) } else { self.normal };
         (element.cell, self.cells.order())
     }
 }

@@ -141,8 +141,10 @@ impl Judge {
     }
 }
 
-/// The unit mean normal of a linear face: that of a triangle, the cross product of a quadrilateral's diagonals.
-fn mean_normal(corners: &[DVec3]) -> DVec3 {
+/// The unit mean normal of a linear face with these corners: that of a triangle, the cross product of a quadrilateral's diagonals; zero where
+/// the face has no area.
+#[must_use]
+pub fn mean_normal(corners: &[DVec3]) -> DVec3 {
     let fan = corners.windows(2).skip(1).map(|pair| (pair[0] - corners[0]).cross(pair[1] - corners[0]));
     fan.sum::<DVec3>().normalize_or_zero()
 }

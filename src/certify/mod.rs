@@ -41,10 +41,10 @@ mod straight;
 mod tests;
 mod verdict;
 
-pub use certificate::{Certificate, Tally, certify, mesh};
+pub use certificate::{Certificate, Tally, certify, mesh, surface};
 pub use check::{NotCertifiable, check};
 pub use elements::{Buffer, Elements, MeshElements};
-pub use face::{FaceFinding, WallFace, Walls, walls};
+pub use face::{FaceFinding, WallFace, Walls, mean_normal, walls};
 pub use judge::{Judge, Shape};
 pub use judged::Judged;
 pub use verdict::{Bounds, Finding, Method, Verdict};

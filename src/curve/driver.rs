@@ -76,8 +76,8 @@ pub fn curve(
 ) -> Result<Curved, Error> {
     let mut clock = Clock::new(observer);
     clock.step(Step::Read);
-    let mesh = input::checked(mesh)?;
-    input::check_cad(&mesh, cad)?;
+    let mesh = input::checked(mesh, settings.surface)?;
+    input::check_cad(&mesh, cad, settings.surface)?;
     clock.step(Step::Associate);
     let associated = Associated::new(&mesh, cad, linkage, settings)?;
     drive(mesh, associated, settings, clock)
@@ -99,7 +99,9 @@ pub(super) fn drive(
 
     clock.step(Step::Certify);
     let proof = Proof::of(&level);
-    let Recovered { proof, off_cad } = if proof.holds() && smoothed.end.worst() >= settings.floor {
+    // Recovery moves the cells behind faces; behind those of a surface mesh there are none.
+    let holds = settings.surface || (proof.holds() && smoothed.end.worst() >= settings.floor);
+    let Recovered { proof, off_cad } = if holds {
         Recovered { proof, off_cad: Vec::new() }
     } else {
         clock.step(Step::Recover);

@@ -6,7 +6,10 @@ use super::checkpoint::CheckpointError;
 use crate::associate::{AssociateError, ClassifyError, LinkageError, UnknownPatch};
 use crate::element::Order;
 use crate::formats;
-use crate::mesh::TooMany;
+use crate::mesh::{ElementId, Elements, TooMany};
+
+/// Elements that an error lists by number.
+const LISTED: usize = 10;
 
 /// Why a mesh in memory was not curved.
 #[derive(Debug, thiserror::Error)]
@@ -28,9 +31,22 @@ pub enum Error {
     UnknownPatch(#[from] UnknownPatch),
     /// Nothing to curve.
     #[error(
-        "has no volume elements (tets, pyramids, prisms, hexes), nor triangles or quadrilaterals that all lie in one plane: nothing to curve"
+        "has no volume elements (tets, pyramids, prisms, hexes), nor triangles or quadrilaterals that all lie in one plane: nothing to curve; if it is a mesh of faces on CAD surfaces, --surface curves it"
     )]
     NoCells,
+    /// Not a mesh of faces on curved surfaces.
+    #[error("{0}: leave --surface away")]
+    NotSurface(&'static str),
+    /// Faces that lean over against the others on their CAD face.
+    #[error(
+        "{count} faces lie upside down on their CAD face, against most others there: {listed}; turn or repair them first"
+    )]
+    UpsideDown {
+        /// How many faces.
+        count: usize,
+        /// The first of them, by kind and number.
+        listed: String,
+    },
     /// Nothing to curve onto.
     #[error("has no faces: nothing to curve onto")]
     NoFaces,
@@ -58,6 +74,13 @@ pub enum Error {
         /// The first of them, by kind and number.
         listed: String,
     },
+}
+
+/// The first of some elements, by kind and number.
+pub(super) fn listed(elements: &Elements, some: &[ElementId]) -> String {
+    let named = some.iter().take(LISTED).map(|&id| format!("{} {}", elements.cell(id), elements.get(id).tag));
+    let more = if some.len() > LISTED { ", ..." } else { "" };
+    named.collect::<Vec<_>>().join(", ") + more
 }
 
 impl From<ClassifyError> for Error {

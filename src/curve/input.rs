@@ -2,20 +2,22 @@
 
 use cad::Model;
 
-use super::error::Error;
+use super::error::{Error, listed};
 use super::settings::Settings;
+use super::surface;
 use crate::associate::{Classified, Linkage, OpenFace, Sources, classify, open_faces, open_notes};
 use crate::certify;
 use crate::element::Order;
-use crate::mesh::{Boundary, ElementId, Elements, Mesh, Periodic, Skin};
+use crate::mesh::{Boundary, ElementId, Mesh, Periodic, Skin};
 
-/// Elements that an error lists by number.
-const LISTED: usize = 10;
-
-/// A mesh that can be curved, every side of its skin marked by a boundary element; what of it is amiss stands in its notes.
-pub(super) fn checked(linear: Mesh) -> Result<Mesh, Error> {
+/// A mesh that can be curved, every side of its skin marked by a boundary element; what of it is amiss stands in its notes. One of faces on
+/// `surface`s has no skin, and its faces are judged when it is known on what they lie.
+pub(super) fn checked(linear: Mesh, surface: bool) -> Result<Mesh, Error> {
     if linear.order() != Order::LINEAR {
         return Err(Error::NotLinear { order: linear.order() });
+    }
+    if surface {
+        return surface::checked(linear);
     }
     if !linear.is_volume() && linear.plane(linear.points()).is_none() {
         return Err(Error::NoCells);
@@ -33,16 +35,9 @@ pub(super) fn checked(linear: Mesh) -> Result<Mesh, Error> {
     Err(Error::Inverted { count: failures.len(), listed: listed(&linear.cells(), &failures) })
 }
 
-/// The first of some elements, by kind and number.
-fn listed(elements: &Elements, some: &[ElementId]) -> String {
-    let named = some.iter().take(LISTED).map(|&id| format!("{} {}", elements.cell(id), elements.get(id).tag));
-    let more = if some.len() > LISTED { ", ..." } else { "" };
-    named.collect::<Vec<_>>().join(", ") + more
-}
-
 /// Refuses CAD that nothing of a mesh can be curved onto.
-pub(super) fn check_cad(mesh: &Mesh, cad: &Model) -> Result<(), Error> {
-    if mesh.is_volume() && cad.faces().is_empty() { Err(Error::NoFaces) } else { Ok(()) }
+pub(super) fn check_cad(mesh: &Mesh, cad: &Model, surface: bool) -> Result<(), Error> {
+    if (surface || mesh.is_volume()) && cad.faces().is_empty() { Err(Error::NoFaces) } else { Ok(()) }
 }
 
 /// A mesh associated with its CAD.
@@ -77,6 +72,9 @@ impl Associated {
         let open = |inference| open_faces(linear, &boundary, &classified.association, inference, &straight);
         let open_faces = inference.map_or_else(Vec::new, open);
         classified.association.notes.extend(open_notes(linear, &boundary, &open_faces));
+        if settings.surface {
+            surface::check_sides(linear, &boundary, &classified.association)?;
+        }
         let (cad_unit, cad_scale) = (cad.unit().name.clone(), cad.scale());
         Ok(Associated { classified, open_faces, periodic, boundary, cad_unit, cad_scale })
     }

@@ -102,7 +102,7 @@ impl Job {
         if let Some((file, solver)) = &self.solver {
             formats::check_solver(file, solver, &linear, self.settings.order)?;
         }
-        checked(linear).map_err(|cause| self.error(cause))
+        checked(linear, self.settings.surface).map_err(|cause| self.error(cause))
     }
 
     fn read_cad(&self, scale: f64) -> Result<Model, JobError> {
@@ -110,7 +110,7 @@ impl Job {
     }
 
     fn associated(&self, linear: &Mesh, cad: &Model) -> Result<Associated, Error> {
-        check_cad(linear, cad)?;
+        check_cad(linear, cad, self.settings.surface)?;
         Associated::new(linear, cad, self.read_linkage()?.as_ref(), &self.settings)
     }
 

@@ -41,6 +41,9 @@ impl<'a> Level<'a> {
     #[must_use]
     pub fn new(case: Case<'a>, mut elevated: Elevated) -> (Level<'a>, Vec<String>) {
         let (periodic, notes) = PeriodicConstraint::new(&mut elevated, case.settings.freeze_linear);
+        if case.settings.surface {
+            elevated.boundary_nodes = elevated.mesh.points().len();
+        }
         let wall = Wall::new(&case.association.nodes, elevated.boundary_nodes);
         let curved = elevated.mesh.points().to_vec();
         (Level { case, elevated, curved, wall, periodic }, notes)

@@ -49,6 +49,7 @@ pub mod recover;
 mod settings;
 mod smoothing;
 mod start;
+mod surface;
 mod trace;
 pub mod wall;
 pub mod wall_state;

@@ -29,6 +29,7 @@ use super::level::{Case, Level};
 use super::observer::{Clock, Observer, Relay, Step};
 use super::proof::Proof;
 use super::recover::recover;
+use super::settings::Settings;
 use super::smoothing::smooth_level;
 use super::start::start;
 use super::wall::fit::fit;
@@ -36,7 +37,7 @@ use super::wall::{follow_rims, project};
 use crate::element::Order;
 use crate::mesh::Mesh;
 use crate::mesh::elevate::elevate;
-use crate::smooth::{Engine, Progress, Smoothed, Summary};
+use crate::smooth::{self, Engine, Progress, Smoothed, Summary};
 
 /// What smoothing did at an order below the one asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -135,7 +136,7 @@ impl<'a> Continuation<'a> {
         let mut skipped = false;
         let mut lower_orders = Vec::new();
         let settings = self.case.settings;
-        let direct = settings.direct || settings.smoothing.engine == Engine::Gradient;
+        let direct = settings.direct || settings.surface || settings.smoothing.engine == Engine::Gradient;
         for order in Order::all().filter(|&order| order > Order::LINEAR && order < end && !direct) {
             let (mut level, _) = self.projected(order, clock)?;
             if self.found.as_ref().is_some_and(|found| found.nodes() > level.curved.len()) {
@@ -196,7 +197,9 @@ impl<'a> Continuation<'a> {
         }
         clock.step(Step::Smooth);
         let mut relay = Relay { observer: clock.observer, work };
-        Ok(smooth_level(level, &self.case.settings.smoothing, resumed, &mut relay))
+        let Settings { smoothing, surface, .. } = self.case.settings;
+        let sweeps = if *surface { 0 } else { smoothing.max_sweeps };
+        Ok(smooth_level(level, &smooth::Settings { max_sweeps: sweeps, ..smoothing.clone() }, resumed, &mut relay))
     }
 }
 

@@ -29,7 +29,12 @@ impl Proof {
     #[must_use]
     pub fn of(level: &Level) -> Proof {
         let settings = certify::Settings::default();
-        let certificate = certify::mesh(level.mesh(), &level.curved, Some(level.linear()), &settings);
+        let (mesh, linear) = (level.mesh(), level.linear());
+        let certificate = if level.case.settings.surface {
+            certify::surface(mesh, &level.curved, linear, &settings)
+        } else {
+            certify::mesh(mesh, &level.curved, Some(linear), &settings)
+        };
         Proof { certificate, walls: walls(level, |_| true) }
     }
 

@@ -12,6 +12,8 @@ use crate::smooth;
 pub struct Settings {
     /// Which patches are curved.
     pub patches: Choice,
+    /// Whether the mesh is one of faces on the CAD's surfaces, without a volume.
+    pub surface: bool,
     /// Order of the curved mesh, 2 to 4.
     pub order: Order,
     /// Whether the mesh's entity tags may be the CAD's numbers. Default true.
@@ -43,6 +45,7 @@ impl Settings {
     pub fn new(order: Order) -> Settings {
         Settings {
             patches: Choice::All,
+            surface: false,
             order,
             by_tags: true,
             tolerance: None,

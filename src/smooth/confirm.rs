@@ -45,7 +45,8 @@ impl Bench {
         self.corners.clear();
         self.corners.extend(nodes[..cell.corner_count()].iter().map(|n| problem.straight[n.index()]));
         let (points, corners) = (&self.points[..], Some(&self.corners[..]));
-        let shape = Shape { cell, order: problem.order, points, corners, upright: problem.view.normal.as_slice() };
+        let view = problem.view.of_element(&self.corners);
+        let shape = Shape { cell, order: problem.order, points, corners, upright: view.normal.as_slice() };
         // Only the sign matters: any bound is near enough.
         let settings = certify::Settings { gap: f64::INFINITY, ..certify::Settings::default() };
         let finding = self.judge.examine(&shape, &settings);

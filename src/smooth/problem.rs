@@ -114,8 +114,9 @@ impl<'a> Problem<'a> {
             if points == targets {
                 return ElementCost { c_wcn: 1.0, mean_c_wcn: 1.0, c_jac: 1.0, cut: 0 };
             }
-            self.view.turn(points);
-            self.view.turn(targets);
+            let view = self.view.of_element(&targets[..self.cell(e).corner_count()]);
+            view.turn(points);
+            view.turn(targets);
             let (c_wcn, mean_c_wcn, cut) = element_c_wcn(self.cell(e), self.order, points, targets);
             let element = Element { points, targets, cut };
             let c_jac = kernels.of(self.cell(e)).c_jac(&element, scratch);

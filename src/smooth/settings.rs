@@ -5,7 +5,8 @@ use super::Engine;
 /// What the user can set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Elements whose cost is below are worked on, with their neighbours. Default 0.8 (paper §2.3).
+    /// Elements whose cost is below are worked on, with their neighbours; in a plane mesh those 0.05 above it as well. Default 0.8
+    /// (paper §2.3).
     pub threshold: f64,
     /// Weight of shape in equation (2), 0 to 1; `None` is `(p - 1) / p`.
     pub alpha: Option<f64>,

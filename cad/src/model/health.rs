@@ -35,8 +35,6 @@ pub struct Health {
     pub trims: Vec<(FaceId, TrimFault)>,
     /// Lines inside faces at which the surface turns.
     pub creases: Vec<Crease>,
-    /// Pairs of faces that cover each other, see [`Model::duplicate_faces`].
-    pub duplicate_faces: Vec<[FaceId; 2]>,
     /// Entities of the file that came to no shape, see [`Model::dropped`].
     pub dropped: Vec<String>,
     /// What OCCT's checks say, see [`Model::warnings`].
@@ -90,7 +88,6 @@ impl Model {
             tiny_faces: Vec::new(),
             trims: Vec::new(),
             creases: Vec::new(),
-            duplicate_faces: self.duplicate_faces(),
             dropped: self.dropped().to_vec(),
             warnings: self.warnings().to_vec(),
         };

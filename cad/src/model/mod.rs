@@ -2,7 +2,6 @@
 
 pub(crate) mod containment;
 pub(crate) mod crease;
-mod duplicate;
 pub(crate) mod health;
 pub(crate) mod reference;
 mod sewing;

@@ -39,15 +39,14 @@ fn doubtful_faces_are_told() {
     };
     let angle = point(1.0 - 1.1e-4).angle_between(point(1.0));
     assert!((ridge.angle - angle).abs() < 1e-3 * angle && (ridge.place.x - 2.0).abs() < 1e-12, "{ridge}, not {angle}");
-    let doubled: Vec<String> = health.duplicate_faces.iter().flatten().map(ToString::to_string).collect();
+    let doubled: Vec<String> = model.duplicate_faces().iter().flatten().map(ToString::to_string).collect();
     assert_eq!(doubled, ["face:3", "face:8"]);
 
     let told = shape("lemon.step").health().warnings;
     assert!(told.iter().any(|told| told.contains("bounded by a vertex alone")), "{told:?}");
 
     for smooth in [fixture("weeble/weeble.step"), fixture("torus/torus.step"), fixture("wing_sharp/wing_sharp.step")] {
-        let health = smooth.health();
-        assert!(health.creases.is_empty() && health.duplicate_faces.is_empty(), "{:?}", health);
+        assert!(smooth.health().creases.is_empty() && smooth.duplicate_faces().is_empty(), "{:?}", smooth.path());
     }
 }
 

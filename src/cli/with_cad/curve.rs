@@ -38,6 +38,10 @@ pub(in crate::cli) struct Options {
     order: Order,
     #[arg(short, long, value_name = "OUT", required_unless_present = "dry_run", help = form::output("The curved mesh"))]
     output: Option<PathBuf>,
+    /// The mesh is one of triangles and quadrilaterals on CAD faces, without a volume: its nodes are put on the CAD and fitted to it, and
+    /// its faces proven free of folds, on the CAD's side; nothing is smoothed
+    #[arg(long, conflicts_with_all = ["checkpoint", "resume", "curve_layers"])]
+    surface: bool,
     /// Report which patches lie on which CAD faces, and stop there
     #[arg(long)]
     dry_run: bool,
@@ -77,7 +81,7 @@ pub(in crate::cli) struct Options {
     /// displacement reaches
     #[arg(long, value_name = "auto|N", default_value = "auto", value_parser = layers)]
     curve_layers: Layers,
-    /// Smooth elements whose cost is below this (0 to 1)
+    /// Smooth elements whose cost is below this (0 to 1), in a plane mesh those 0.05 above it as well
     #[arg(long, value_name = "0..1", default_value_t = 0.8, value_parser = fraction)]
     threshold: f64,
     /// Weight of shape against size, equation (2); lower it to 0.3 where Jacobians stay small [default: (p-1)/p]
@@ -176,6 +180,7 @@ impl Options {
     fn settings(&self) -> Settings {
         Settings {
             patches: self.patches(),
+            surface: self.surface,
             order: self.order,
             by_tags: !self.ignore_tags,
             tolerance: self.tolerance,

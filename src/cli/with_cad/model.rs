@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
-use cad::{Health, Kind, Model};
+use cad::{FaceId, Health, Kind, Model};
 
 use super::reading::in_a_child;
 use crate::cli::output::{Failure, bounds};
@@ -32,7 +32,7 @@ pub(in crate::cli) fn describe(path: &Path, timeout: f64) -> Result<String, Fail
         let name = if group.name.is_empty() { &group.reference } else { &group.name };
         writeln!(text, "  group {name:?}: {}", members.join(", "))?;
     }
-    flaws(&mut text, &health)?;
+    flaws(&mut text, &health, &model.duplicate_faces())?;
     Ok(text)
 }
 
@@ -42,7 +42,7 @@ fn by_kind(counts: &BTreeMap<Kind, usize>) -> String {
 }
 
 /// What may spoil a projection.
-fn flaws(text: &mut String, health: &Health) -> std::fmt::Result {
+fn flaws(text: &mut String, health: &Health, duplicates: &[[FaceId; 2]]) -> std::fmt::Result {
     let list = |items: &mut dyn Iterator<Item = String>| items.collect::<Vec<_>>().join(", ");
     let mut entities = |what: &str, ids: &[cad::EdgeId]| match ids {
         [] => Ok(()),
@@ -63,7 +63,7 @@ fn flaws(text: &mut String, health: &Health) -> std::fmt::Result {
     for crease in &health.creases {
         writeln!(text, "  {crease}")?;
     }
-    for [one, other] in &health.duplicate_faces {
+    for [one, other] in duplicates {
         writeln!(text, "  {one} and {other} are the same face twice")?;
     }
     for dropped in &health.dropped {

@@ -8,8 +8,8 @@ use crate::associate::Summary;
 impl Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "association by {}", self.source)?;
-        let heads = ["patch", "faces", "undecided", "off the CAD", "CAD distance", "CAD faces"];
-        let [name, faces, undecided, off, distance, on] = heads;
+        let [faces, on] = if self.in_plane { ["edges", "CAD edges"] } else { ["faces", "CAD faces"] };
+        let [name, undecided, off, distance] = ["patch", "undecided", "off the CAD", "CAD distance"];
         writeln!(f, "{name:<24}{faces:>9}{undecided:>11}{off:>13}{distance:>14}  {on}")?;
         for p in &self.patches {
             let on: Vec<String> = p.cad_faces.iter().map(|(target, count)| format!("{target} ({count})")).collect();

@@ -8,13 +8,16 @@ use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::table::Table;
-use crate::associate::{Association, Classification};
+use crate::associate::{Association, Classification, normal_of};
 use crate::curve::level::Level;
 use crate::element::{Cell, edge_nodes};
 use crate::mesh::{Boundary, NodeId};
 
 /// Faces that are measured at a time: what they take while they wait does not grow with the mesh.
 const BATCH: usize = 1 << 12;
+
+/// A foot this fraction of an edge beside its point, along the curve, is as near as closest points are found.
+const BESIDE: f64 = 1e-7;
 
 /// What is measured: a mesh face on a surface, or a mesh edge on a curve.
 #[derive(Clone, Copy)]
@@ -130,7 +133,18 @@ impl<'a> Fit<'_, 'a> {
     }
 
     pub(super) fn far(&self, part: Part, values: &[Vec<f64>]) -> f64 {
-        self.feet(part, values).iter().filter_map(|(_, foot)| *foot).map(|foot| foot.distance).fold(0.0, f64::max)
+        let feet = self.feet(part, values).into_iter();
+        feet.filter_map(|(x, foot)| Some(self.gap(part, x, &foot?))).fold(0.0, f64::max)
+    }
+
+    /// How far a point of the wall is from the CAD; in a plane mesh across the curve, where its foot is beside it only by what closest
+    /// points are worth.
+    pub(super) fn gap(&self, part: Part, x: DVec3, foot: &Foot) -> f64 {
+        let plane = self.level.plane();
+        let normal = plane.and_then(|_| normal_of(self.group(self.classification(part))?, foot, plane));
+        let across = normal.map(|normal| (x - foot.point).project_onto(normal));
+        let beside = |across: &DVec3| (x - foot.point).distance(*across) <= BESIDE * self.size(part);
+        across.filter(beside).map_or(foot.distance, DVec3::length)
     }
 
     /// The faces and edges that have nodes to slide, roughly measured.

@@ -10,6 +10,8 @@ use crate::mesh::NodeId;
 
 /// Power of the distances: a sum of 8th powers is near to the maximum, and smooth.
 const POWER: i32 = 8;
+/// Power of a line's strains over their limits: high, so that a line is nearly held by them alone.
+const LIMITED: i32 = 32;
 /// Weight of the squared strain against the 8th power of a distance over its level.
 ///
 /// With 2 the weeble's wall comes out 1.10e-3 off the CAD, with 3 1.24e-3; wing_sharp at scale 0.4 with `C_JAC` 0.793 and 0.797.
@@ -17,6 +19,9 @@ const STIFFNESS: f64 = 3.0;
 
 /// A step shorter than this share of Newton's is not tried.
 const LEAST_STEP: f64 = 1e-6;
+/// What is added to the diagonal of Newton's matrix, as a share of its largest entry: where distances are next to nothing, there are slides that
+/// change none of them.
+const DAMPING: f64 = 1e-12;
 /// A step that gains less than this share is the last.
 const CONVERGED: f64 = 1e-6;
 
@@ -49,6 +54,8 @@ pub(super) struct Model {
     pub(super) products: Vec<Vec<f64>>,
     /// How far each of the rim's nodes has slid since it was projected.
     pub(super) shifts: Vec<DVec3>,
+    /// Of a line of a plane mesh: by how much it may be squeezed and stretched.
+    pub(super) limits: Option<[f64; 2]>,
 }
 
 /// What a sliding node does to a piece.
@@ -86,7 +93,8 @@ pub(super) fn relax(sliders: &mut [Slider], models: &mut [Model], sweeps: usize)
     }
 }
 
-/// Lets the nodes of a line that no other line shares slide to the minimum of the same, by at most so many steps of Newton's method.
+/// Lets the nodes of a line that no other line shares slide to the minimum of the same, by at most so many steps of Newton's method. The
+/// powers of its strains over their limits are added: cut off at its limits afterwards, a slide comes less far.
 pub(super) fn solve(sliders: &mut [Slider], own: &mut Model, steps: usize) {
     let sliding: Vec<usize> =
         (0..own.sliders.len()).filter(|&r| sliders[own.sliders[r].slider].along.len() == 1).collect();
@@ -115,9 +123,11 @@ pub(super) fn solve(sliders: &mut [Slider], own: &mut Model, steps: usize) {
     }
 }
 
-/// Solves a small symmetric positive definite system by Gauss's elimination; `None` where it is singular.
+/// Solves a small symmetric positive semidefinite system by Gauss's elimination, damped where it is nearly singular; `None` where it is zero.
 fn solved(mut matrix: Vec<Vec<f64>>, mut side: Vec<f64>) -> Option<Vec<f64>> {
     let n = side.len();
+    let largest = (0..n).map(|row| matrix[row][row]).fold(0.0, f64::max);
+    (0..n).for_each(|row| matrix[row][row] += DAMPING * largest);
     for pivot in 0..n {
         let diagonal = matrix[pivot][pivot];
         if diagonal <= 0.0 || !diagonal.is_finite() {
@@ -180,7 +190,15 @@ impl Model {
         for (u, row) in self.shifts.iter().zip(&self.products) {
             strain += self.shifts.iter().zip(row).map(|(v, k)| u.dot(*v) * k).sum::<f64>();
         }
-        far / count + STIFFNESS * strain
+        let (pulls, points) = (self.pulls(&self.shifts), self.slopes.len() as f64);
+        far / count + STIFFNESS * strain + pulls.map(|pull| pull.abs().powi(LIMITED)).sum::<f64>() / points
+    }
+
+    /// Strains of a line at the lattice's points along its chord, over their limits: below zero where it is squeezed.
+    pub(super) fn pulls(&self, shifts: &[DVec3]) -> impl Iterator<Item = f64> {
+        let [squeezed, stretched] = self.limits.unwrap_or([f64::INFINITY; 2]);
+        let strain = |slopes: &Vec<DVec3>| shifts.iter().zip(slopes).map(|(u, slope)| u.dot(*slope)).sum::<f64>();
+        self.slopes.iter().map(strain).map(move |strain| strain / if strain < 0.0 { squeezed } else { stretched })
     }
 
     /// Its derivatives by the slides of some of its nodes along their tangents.
@@ -200,6 +218,7 @@ impl Model {
                 }
             }
         }
+        self.limit(sliding, tangents, &mut g, &mut h);
         for a in 0..n {
             let own = &self.products[self.sliders[sliding[a]].rim];
             let pull: DVec3 = self.shifts.iter().zip(own).map(|(u, k)| *u * *k).sum();
@@ -211,6 +230,24 @@ impl Model {
         (g, h)
     }
 
+    /// Adds the derivatives of what its strains over their limits add.
+    fn limit(&self, sliding: &[usize], tangents: &[DVec3], g: &mut [f64], h: &mut [Vec<f64>]) {
+        let [squeezed, stretched] = self.limits.unwrap_or([f64::INFINITY; 2]);
+        let hard = f64::from(LIMITED);
+        let share = hard / self.slopes.len() as f64;
+        for (pull, slopes) in self.pulls(&self.shifts).zip(&self.slopes) {
+            let limit = if pull < 0.0 { squeezed } else { stretched };
+            let weight = share * pull.abs().powi(LIMITED - 2);
+            let slope = |a: usize| slopes[self.sliders[sliding[a]].rim].dot(tangents[a]) / limit;
+            for a in 0..sliding.len() {
+                g[a] += weight * pull * slope(a);
+                for b in 0..sliding.len() {
+                    h[a][b] += (hard - 1.0) * weight * slope(a) * slope(b);
+                }
+            }
+        }
+    }
+
     /// Slides some of its nodes along their tangents by a share of a step.
     fn slide(&mut self, sliding: &[usize], tangents: &[DVec3], step: &[f64], share: f64) {
         for ((&r, tangent), step) in sliding.iter().zip(tangents).zip(step) {
@@ -220,9 +257,14 @@ impl Model {
         }
     }
 
+    /// What the rim has slid at a fraction of its way from `before`.
+    pub(super) fn shifts_at(&self, before: &[DVec3], share: f64) -> Vec<DVec3> {
+        before.iter().zip(&self.shifts).map(|(a, b)| a.lerp(*b, share)).collect()
+    }
+
     /// Largest strain `|grad u|` where the rim has slid from `before` by a fraction of its way.
     pub(super) fn strain(&self, before: &[DVec3], share: f64) -> f64 {
-        let shifts: Vec<DVec3> = before.iter().zip(&self.shifts).map(|(a, b)| a.lerp(*b, share)).collect();
+        let shifts = self.shifts_at(before, share);
         let at = |slopes: &Vec<DVec3>| -> f64 {
             let row = |axis: usize| -> DVec3 { shifts.iter().zip(slopes).map(|(u, s)| *s * u[axis]).sum() };
             (0..3).map(|axis| row(axis).length_squared()).sum::<f64>().sqrt()
