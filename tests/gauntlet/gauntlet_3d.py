@@ -26,6 +26,7 @@ OPTIONS = {
     "D150WithGuides_fusedAircraft.brep": ["--sagitta-over-h0", "200", "--target", "60000"],
     "dlr_f6.brep": ["--faces", "1-123", "--target", "60000"],
     "onera-m6-sharp-te.stp": ["--faces", "3-12", "--sagitta-over-h0", "200"],
+    "onera-m6-sharp-te.egads": ["--faces", "3-12", "--sagitta-over-h0", "200"],
     "mach_onera_m6.igs": ["--sew", "1e-8", "--weld", "2e-4", "--size", "0.055", "--size-min", "0.003"],
     "IEA_15MW_CFD.stp": ["--faces", "2,3", "--size", "3.2", "--size-min", "0.45", "--curvature", "9"],
     "IEA_15MW_CFD.igs": ["--faces", "1,2", "--size", "3.2", "--size-min", "0.45", "--curvature", "9"],
