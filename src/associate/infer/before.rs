@@ -39,13 +39,15 @@ impl Before {
         }
     }
 
-    /// Faces on CAD that others were found on before, which hang together with none of those, node by node through faces that the CAD holds:
-    /// the outer boundary of thin layers is within the wider tolerance of the wall. Rising.
+    /// Faces on CAD that others were found on before, which hang together, node by node through faces that the CAD holds, with none of those
+    /// and with none on CAD that is new: the outer boundary of thin layers is within the wider tolerance of the wall. Rising.
     pub(super) fn apart(&self, boundary: &Boundary, nodes: usize, held: &[Held]) -> Vec<usize> {
         let corners = boundary.corners.iter().zip(0_u32..);
         let around = Incidence::new(nodes, corners.flat_map(|(own, face)| own.iter().map(move |n| (n.index(), face))));
         let mut reached = vec![false; held.len()];
-        let mut front: Vec<usize> = self.faces.iter().copied().filter(|&face| held[face] != Held::No).collect();
+        let is_new = |held: Held| matches!(held, Held::On(host) if !self.hosts.contains(&host));
+        let is_found = |face: usize| is_new(held[face]) || (held[face] != Held::No && self.faces.contains(&face));
+        let mut front: Vec<usize> = (0..held.len()).filter(|&face| is_found(face)).collect();
         front.iter().for_each(|&face| reached[face] = true);
         while let Some(face) = front.pop() {
             for &next in boundary.corners[face].iter().flat_map(|n| around.at(n.index())) {
@@ -103,8 +105,9 @@ mod tests {
         let mut open = held;
         (open[2], open[5]) = (Held::No, Held::Open);
         assert_eq!(before(&[0]).apart(&boundary, 12, &open), [4, 5, 6, 7]);
-        // On CAD on which nothing was found before, all is new.
-        let other = [Held::On(FaceId::new(1).into()); 8];
+        // On CAD on which nothing was found before, all is new; so is what one cannot say of beside it.
+        let mut other = [Held::On(FaceId::new(1).into()); 8];
+        other[6] = Held::Open;
         assert!(before(&[]).apart(&boundary, 12, &other).is_empty());
     }
 }
