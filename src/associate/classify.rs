@@ -79,10 +79,13 @@ pub fn classify(
     model: &Model,
 ) -> Result<Classified, ClassifyError> {
     let classifier = Classifier { sources, mesh, boundary, model };
-    match sources.linkage {
-        Some(linkage) => classifier.by_linkage(linkage),
-        None => Ok(classifier.without_linkage()?),
-    }
+    let mut classified = match sources.linkage {
+        Some(linkage) => classifier.by_linkage(linkage)?,
+        None => classifier.without_linkage()?,
+    };
+    let association = &mut classified.association;
+    association.notes.extend(flaws(model, &association.surfaces));
+    Ok(classified)
 }
 
 /// Whether geometry decides everything, and something otherwise than the tags say: these are another file's numbers. Tags are held to points
@@ -203,7 +206,6 @@ impl Classifier<'_> {
         let offset = self.sources.max_offset;
         let mut association = associate(self.mesh, self.boundary, self.model, &candidates, offset)?;
         association.notes.extend(self.model.losses());
-        association.notes.extend(flaws(self.model, &association.surfaces));
         association.notes.append(&mut candidates.notes);
         Ok(Classified { candidates, association, inference, source })
     }
