@@ -59,6 +59,9 @@ pub const BOUND_SAFETY: f64 = 1.5;
 /// A trimming curve that enters a leaf by less than this fraction of the leaf's size only touches it.
 pub const TOUCH: f64 = 1e-9;
 
+/// Control points no farther than this from one plane, or line, are those of a plane, or line. Fraction of their extent.
+pub const FLAT: f64 = 1e-9;
+
 /// A surface that turns by more along a line inside its face has a crease there. Radians; surfaces that are meant to be smooth turn by less
 /// than a hundredth.
 pub const CREASE: f64 = 0.02;

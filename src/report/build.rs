@@ -173,6 +173,14 @@ pub(super) fn distance(curved: &Curved, face: usize) -> Option<f64> {
     far.reduce(f64::max)
 }
 
+/// The largest distance of a boundary face's nodes from the CAD that it is associated with.
+fn node_distance(curved: &Curved, face: usize) -> Option<f64> {
+    let Classification::Surface(surface) = curved.association.faces[face] else { return None };
+    let group = &curved.association.surfaces[surface].group;
+    let nodes = curved.boundary.nodes(face, &curved.mesh);
+    nodes.iter().map(|n| group.distance(curved.mesh.points()[n.index()])).reduce(f64::max)
+}
+
 fn off_cad(curved: &Curved, off: &OffCadFace) -> OffCadReport {
     let face = &curved.boundary.faces[off.face];
     OffCadReport {
@@ -182,6 +190,7 @@ fn off_cad(curved: &Curved, off: &OffCadFace) -> OffCadReport {
         order: off.order().map(Order::get),
         fraction: off.fraction(),
         cad_distance: distance(curved, off.face),
+        node_distance: node_distance(curved, off.face),
         position: middle(curved, off.face),
     }
 }

@@ -146,8 +146,10 @@ pub struct OffCadReport {
     pub order: Option<usize>,
     /// Where it was taken back: the fraction of its displacement from there that is left, 0 to 1.
     pub fraction: Option<f64>,
-    /// Its largest distance from the CAD, at (3p)^2 samples.
+    /// Its largest distance from the CAD, at (3p)^2 samples: that of a curved face whose nodes all lie on the CAD is not 0 either.
     pub cad_distance: Option<f64>,
+    /// The largest distance of its nodes from the CAD: what it had to leave it by.
+    pub node_distance: Option<f64>,
     /// Its middle.
     pub position: [f64; 3],
 }

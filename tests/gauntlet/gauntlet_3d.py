@@ -5,7 +5,7 @@ usage: gauntlet_3d.py SAGITTA DIR[:DIR] [--orders 2,3] [--cells prism,tet] [--on
                       [--no-peer]
 
 The meshes are those of fixtures/make_foreign.py, with the options in OPTIONS where a file needs some (walls among the faces, sizes), and
-as many cells as TARGET says. "off" are faces that had to leave the CAD, with their largest distance; "open" those of which it could
+as many cells as TARGET says. "off" are faces that had to leave the CAD, with their nodes' largest distance; "open" those of which it could
 not be decided where they lie, with the first cause. "Gmsh" is the number of elements that are invalid after Gmsh's own elevation
 of the same mesh, as `sagitta check` finds; a dash where Gmsh has no such mesh. A mesh that is there already is taken as it is.
 """
@@ -99,7 +99,7 @@ def row(sagitta, mesh, path, order, out, seconds):
     with open(report) as text:
         told = json.load(text)
     off, left = told["off_cad"], told["open_faces"]
-    far = max((face["cad_distance"] or 0 for face in off), default=0)
+    far = max((face["node_distance"] or 0 for face in off), default=0)
     end = told["smoothing"]["end"]
     bound = told["certificate"]["j_over_jc"]["lower"]
     return [

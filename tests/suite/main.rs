@@ -23,6 +23,7 @@ mod fit;
 mod foreign_linkage;
 mod formats;
 mod fuzz_formats;
+mod gap;
 mod gmf;
 mod hostile;
 mod linear_positions;

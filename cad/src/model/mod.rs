@@ -2,6 +2,7 @@
 
 pub(crate) mod containment;
 pub(crate) mod crease;
+mod flat;
 pub(crate) mod health;
 pub(crate) mod reference;
 mod sewing;

@@ -1,6 +1,8 @@
 //! Every kind of face and edge, against analysis, OCCT's own distance to the face, and dense sampling.
 
-use crate::common::{Random, options, shape};
+use std::collections::BTreeMap;
+
+use crate::common::{Random, fixture, options, shape};
 use cad::{EdgeId, End, EntityId, Evaluation, FaceId, Group, Hint, Kind, Model, ReferenceError};
 use glam::DVec3;
 use opencascade_sys as sys;
@@ -228,4 +230,53 @@ fn hints_are_never_wrong_on_any_kind() {
             assert!((plain - hinted.distance).abs() < 1e-11 * model.diagonal(), "{i} {at}: {plain} {hinted:?}");
         }
     }
+}
+
+/// Flat is what points of it say: no face or edge is called so that is not, and none by kind alone.
+#[test]
+fn flat_faces_and_straight_edges_are_told_whatever_they_are_written_as() {
+    let mut flat = BTreeMap::new();
+    for (name, model) in [
+        ("kinds", shape("kinds.brep")),
+        ("gap", fixture("gap/gap.step")),
+        ("wing_sharp", fixture("wing_sharp/wing_sharp.step")),
+    ] {
+        for face in model.faces() {
+            let [u, v] = face.parameters.map(stations);
+            let places = u.iter().flat_map(|&u| v.iter().map(move |&v| [u, v]));
+            let seen = is_flat_by_points(&model, face.id.into(), places, 2);
+            assert_eq!(model.is_flat(face.id.into()), seen, "{name}: {} {:?}", face.id, face.kind);
+            *flat.entry((format!("{:?}", face.kind), seen)).or_insert(0) += 1;
+        }
+        for edge in model.edges().iter().filter(|edge| !edge.degenerate) {
+            let places = stations(edge.parameters).into_iter().map(|t| [t, 0.0]);
+            let seen = is_flat_by_points(&model, edge.id.into(), places, 1);
+            assert_eq!(model.is_flat(edge.id.into()), seen, "{name}: {} {:?}", edge.id, edge.kind);
+        }
+    }
+    println!("{flat:?}");
+    assert!(flat.contains_key(&("Bspline".to_owned(), true)) && flat.contains_key(&("Bspline".to_owned(), false)));
+}
+
+fn stations([from, to]: [f64; 2]) -> Vec<f64> {
+    (0..=12).map(|k| from + (to - from) * (0.02 + 0.08 * f64::from(k))).collect()
+}
+
+/// Whether OCCT's points of an entity lie in one line (1 dimension) or plane (2), to 1e-8 of their extent.
+fn is_flat_by_points(model: &Model, id: EntityId, at: impl Iterator<Item = [f64; 2]>, dimensions: usize) -> bool {
+    let place = |at| match model.evaluate(id, at) {
+        Some(Evaluation::Surface(point)) => Some(point.point),
+        Some(Evaluation::Curve(point)) => Some(point.point),
+        _ => None,
+    };
+    let points: Vec<DVec3> = at.filter_map(place).collect();
+    let middle = points.iter().sum::<DVec3>() / points.len() as f64;
+    let mut rest: Vec<DVec3> = points.iter().map(|&p| p - middle).collect();
+    let longest = |rest: &[DVec3]| rest.iter().copied().max_by(|a, b| a.length().total_cmp(&b.length())).unwrap();
+    let extent = longest(&rest).length();
+    for _ in 0..dimensions {
+        let along = longest(&rest).normalize_or_zero();
+        rest.iter_mut().for_each(|r| *r -= r.dot(along) * along);
+    }
+    longest(&rest).length() <= 1e-8 * extent
 }

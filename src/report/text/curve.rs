@@ -130,7 +130,10 @@ impl Report {
                 }
                 _ => "released".to_owned(),
             };
-            let far = face.cad_distance.map_or_else(String::new, |d| format!("up to {d:.2e} off, "));
+            let far = match (face.node_distance, face.cad_distance) {
+                (Some(nodes), Some(face)) => format!("nodes up to {nodes:.2e} off, the {side} {face:.2e}, "),
+                _ => String::new(),
+            };
             let (element, entity, at) = (face.element, &face.entity, position(face.position));
             writeln!(f, "  {side} {element} of {entity}: {far}{way}, near {at}")?;
         }
