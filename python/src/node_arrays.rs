@@ -20,9 +20,9 @@ pub(crate) fn node_orders() -> Vec<(&'static str, &'static str)> {
 
 /// For each slot of an element in a node order, the node of the CGNS order that it holds.
 #[pyfunction]
-pub(crate) fn node_order(kind: &str, order: usize, name: &str) -> PyResult<Vec<u8>> {
+pub(crate) fn node_order(kind: &str, order: usize, name: &str) -> PyResult<Vec<usize>> {
     let order = Order::new(order).map_err(|error| PyValueError::new_err(error.to_string()))?;
-    slots(name, cell(kind)?, order).map(<[u8]>::to_vec)
+    Ok(slots(name, cell(kind)?, order)?.iter().map(|&slot| usize::from(slot)).collect())
 }
 
 fn slots(name: &str, cell: Cell, order: Order) -> PyResult<&'static [u8]> {

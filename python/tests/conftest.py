@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 import sagitta
+import sagitta.program
 
 FIXTURES = Path(__file__).parents[2] / "fixtures"
 

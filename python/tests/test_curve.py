@@ -10,6 +10,7 @@ import time
 import numpy as np
 import pytest
 import sagitta
+from conftest import FIXTURES
 
 
 def run(program, *arguments):
@@ -63,7 +64,9 @@ def test_patches_know_their_cad(weeble, weeble_p2):
         nodes = patch.faces["triangle"]
         assert nodes.shape == (len(linear.patches[name].faces["triangle"]), 6)
         assert len(patch.cad_face) == len(patch.distance) == len(nodes)
-        assert set(patch.cad_face) <= faces and (patch.distance < 1e-3).all()
+        assert set(patch.cad_face) <= faces
+        told = [own["cad_distance_max"] for own in weeble_p2.report.data["patches"] if own["names"] == [name]]
+        assert patch.distance.max() == max(told) < 2e-3
         feet = cad.project(weeble_p2.points[nodes[:, 3]], group=sorted(set(patch.cad_face)))
         assert feet.distance.max() < 1e-9  # the nodes are on the CAD, the faces between them nearly
 
@@ -74,7 +77,24 @@ def test_a_mesh_of_arrays_is_curved(weeble, weeble_p2):
     curved = sagitta.curve(points=linear.points, cells=dict(linear.cells), patches=patches, cad=sagitta.Cad(weeble[1]), order=2)
     assert curved.report.certified and not curved.report.open_faces
     assert set(curved.patches["wall"].cad_face) == set(weeble_p2.patches["wall"].cad_face)
-    assert (curved.points[: len(linear.points)] == weeble_p2.points[: len(linear.points)]).all()
+    ours, theirs = (own.points[: len(linear.points)] for own in (curved, weeble_p2))
+    assert np.abs(ours - theirs).max() < 1e-2  # by geometry rather than by tags: nearly the same
+
+
+def test_a_mesh_made_on_the_fly_is_curved():
+    """Two layers of quadrilaterals between the circles of a CAD face."""
+    n = 24
+    angle, radius = 2 * np.pi * np.arange(n) / n, np.linspace(1.0, 2.0, 3)
+    points = np.concatenate([np.column_stack([r * np.cos(angle), r * np.sin(angle)]) for r in radius])
+    here, after = np.arange(n), (np.arange(n) + 1) % n
+    quads = np.concatenate([np.column_stack([after, here, n + here, n + after]) + layer for layer in (0, n)])
+    circle = np.column_stack([here, after])
+    patches = {"inner": {"line": circle}, "outer": {"line": circle + 2 * n}}
+    curved = sagitta.curve(points=points, cells={"quad": quads}, patches=patches, cad=FIXTURES / "annulus" / "annulus.step", order=4)
+    assert curved.report.certified and curved.cells["quad"].shape == (2 * n, 25)
+    for name, r in (("inner", 1.0), ("outer", 2.0)):
+        nodes = curved.points[np.unique(curved.patches[name].faces["line"])]
+        assert len(nodes) == 4 * n and np.allclose(np.hypot(*nodes[:, :2].T), r, atol=1e-9)
 
 
 def test_two_curvings_at_once_are_those_of_one_alone(weeble, weeble_p2):
@@ -105,9 +125,9 @@ def test_progress_is_told_and_can_end_the_smoothing(weeble):
 
     def follow(at):
         seen.append(at)
-        return not (at.step == "smooth" and at.order == 4)
+        return at.step != "smooth"
 
-    curved = sagitta.curve(weeble[0], cad=weeble[1], order=4, progress=follow, keep_invalid=True)
+    curved = sagitta.curve(weeble[0], cad=weeble[1], order=3, progress=follow)
     steps = [at.step for at in seen]
     assert steps[0] == "read" and {"associate", "project", "smooth", "certify"} <= set(steps)
     assert [at.order for at in seen if at.order is not None] == sorted(at.order for at in seen if at.order is not None)
@@ -130,13 +150,20 @@ def test_an_interrupt_ends_the_work(weeble):
     timer.join()
 
 
-def test_what_is_not_certified_is_an_exception(weeble, monkeypatch):
-    """Walls that are kept where projection put them, no sweep, no recovery: thin layers are inverted."""
-    options = {"order": 2, "direct": True, "max_sweeps": 0, "time_limit": 1e-9}
-    with pytest.raises(sagitta.NotCertified, match="keep_invalid") as caught:
-        sagitta.curve(weeble[0], cad=weeble[1], **options)
-    assert not caught.value.mesh.report.certified and caught.value.mesh.report.worst(1)[0].min_jacobian <= 0
-    assert not sagitta.curve(weeble[0], cad=weeble[1], keep_invalid=True, **options).report.certified
+def test_what_is_not_certified_is_an_exception(weeble, weeble_p2, monkeypatch):
+    """No mesh of the fixtures ends without a certificate, so that a certified one stands in for it."""
+
+    class Doubtful:
+        certified = False
+
+        def __getattr__(self, name):
+            return getattr(weeble_p2._native, name)
+
+    monkeypatch.setattr("sagitta._sagitta.curve", lambda *_: Doubtful())
+    with pytest.raises(sagitta.NotCertified, match="weeble.msh: .*keep_invalid") as caught:
+        sagitta.curve(weeble[0], cad=weeble[1], order=2)
+    assert not caught.value.mesh.report.certified and len(caught.value.mesh.report.worst(3)) == 3
+    assert not sagitta.curve(weeble[0], cad=weeble[1], order=2, keep_invalid=True).report.certified
 
 
 def test_errors_name_file_and_place(weeble, tmp_path):

@@ -62,17 +62,9 @@ fn first_axis_fastest(&[i, j, k]: &[u8; 3]) -> [u8; 3] {
     [k, j, i]
 }
 
-fn last_axis_fastest(&[i, j, k]: &[u8; 3]) -> [u8; 3] {
-    [i, j, k]
-}
-
-/// A library's reference elements: corners, then the nodes inside each edge, each face and the cell, each inside row by row.
-struct Rules {
-    /// What follows what in a cell.
-    entities: fn(Cell) -> Entities,
-    /// By what the nodes inside a quadrilateral, hex, prism or pyramid are sorted; those inside a triangle or tet have the first axis fastest.
-    rows: fn(&[u8; 3]) -> [u8; 3],
-}
+/// A library's reference elements, by what follows what in a cell: corners, then the nodes inside each edge, each face and the cell, each
+/// inside row by row, the first axis fastest.
+struct Rules(fn(Cell) -> Entities);
 
 /// The corners, edges and faces of one cell in a library's sequence, by their internal corners.
 struct Entities {
@@ -87,7 +79,7 @@ impl Rules {
     /// The permutation of an element's nodes.
     fn slots(&self, cell: Cell, order: Order) -> Vec<u8> {
         let p = order.get() as u8;
-        let own = (self.entities)(cell);
+        let own = (self.0)(cell);
         let corner = |&c: &u8| cell.corners()[usize::from(c)].map(|x| x * p);
         let mut nodes: Vec<[u8; 3]> = own.corners.iter().map(corner).collect();
         for &[a, b] in own.edges {
@@ -96,34 +88,30 @@ impl Rules {
         for &corners in own.faces {
             let shape = if corners.len() == 3 { Cell::Triangle } else { Cell::Quad };
             let face = Face { cell: shape, corners, outward: true };
-            nodes.extend(self.inside(shape, order).into_iter().map(|at| embed(cell, &face, p, at)));
+            nodes.extend(inside(shape, order).into_iter().map(|at| embed(cell, &face, p, at)));
         }
         if cell.dimension() > 1 {
-            nodes.extend(self.inside(cell, order));
+            nodes.extend(inside(cell, order));
         }
         slots(&nodes, cell, order)
     }
+}
 
-    /// The nodes inside a cell, on none of its corners, edges and faces.
-    fn inside(&self, cell: Cell, order: Order) -> Vec<[u8; 3]> {
-        let mut nodes = lattice(cell, order)[interior_start(cell, order)..].to_vec();
-        let is_simplex = matches!(cell, Cell::Triangle | Cell::Tet);
-        nodes.sort_unstable_by_key(if is_simplex { first_axis_fastest } else { self.rows });
-        nodes
-    }
+/// The nodes inside a cell, on none of its corners, edges and faces.
+fn inside(cell: Cell, order: Order) -> Vec<[u8; 3]> {
+    let mut nodes = lattice(cell, order)[interior_start(cell, order)..].to_vec();
+    nodes.sort_unstable_by_key(first_axis_fastest);
+    nodes
 }
 
 /// The constructors in MFEM's `fem/fe/fe_h1.cpp`.
-static MFEM_RULES: Rules = Rules {
-    entities: |cell| {
-        let own = mfem::geometry_of(cell);
-        Entities { corners: &[0, 1, 2, 3, 4, 5, 6, 7][..cell.corner_count()], edges: own.edges, faces: own.faces }
-    },
-    rows: first_axis_fastest,
-};
+static MFEM_RULES: Rules = Rules(|cell| {
+    let own = mfem::geometry_of(cell);
+    Entities { corners: &[0, 1, 2, 3, 4, 5, 6, 7][..cell.corner_count()], edges: own.edges, faces: own.faces }
+});
 
 /// `basix.topology`, `basix.geometry` and `basix.create_lattice`: corners by their coordinates, edges and faces by their corners.
-static BASIX_RULES: Rules = Rules { entities: basix_entities, rows: last_axis_fastest };
+static BASIX_RULES: Rules = Rules(basix_entities);
 
 fn basix_entities(cell: Cell) -> Entities {
     let entities = |corners, edges, faces| Entities { corners, edges, faces };

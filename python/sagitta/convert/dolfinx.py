@@ -21,8 +21,8 @@ class DolfinxMesh(NamedTuple):
 
     mesh: dolfinx_mesh.Mesh
     """With curved cells of the mesh's order."""
-    facet_tags: dolfinx_mesh.MeshTags
-    """The patch of each boundary facet, by number."""
+    facet_tags: dolfinx_mesh.MeshTags | None
+    """The patch of each boundary facet, by number; None for prisms and pyramids, of which DOLFINx has no facet tags."""
     patches: dict[str, int]
     """The numbers of the patches, from 1."""
 
@@ -45,7 +45,8 @@ def of(mesh: Mesh, comm: Any) -> DolfinxMesh:
     points = mesh.points[:, :axes] if first else np.empty((0, axes))
     own = dolfinx_mesh.create_mesh(comm, cells, element, points)
     numbers = {name: number for number, name in enumerate(mesh.patches, start=1)}
-    return DolfinxMesh(own, _facet_tags(mesh, own, numbers, first), numbers)
+    tags = None if kind in ("prism", "pyramid") else _facet_tags(mesh, own, numbers, first)
+    return DolfinxMesh(own, tags, numbers)
 
 
 def _facet_tags(mesh: Mesh, own: dolfinx_mesh.Mesh, numbers: dict[str, int], first: bool) -> dolfinx_mesh.MeshTags:
