@@ -35,13 +35,17 @@ def test_mfem_integrates_over_the_elements(kind, p):
         assert sums[name] == pytest.approx(integral(kind, p, function), rel=1e-7), name
 
 
-@curved([(kind, p) for kind, p in ELEMENTS if kind != "pyramid"])
+@curved(ELEMENTS)
 def test_dolfinx_integrates_over_the_elements(kind, p):
     pytest.importorskip("dolfinx")
     import ufl
     from dolfinx import fem
     from mpi4py import MPI
 
+    if kind == "prism" and p > 2:
+        with pytest.raises(sagitta.MeshError, match="prisms of P"):
+            element(kind, p).to_dolfinx(MPI.COMM_SELF)
+        return
     mesh = element(kind, p).to_dolfinx(MPI.COMM_SELF).mesh
     x, dx = ufl.SpatialCoordinate(mesh), ufl.Measure("dx", mesh, metadata={"quadrature_degree": 14})
     one = fem.Constant(mesh, 1.0)

@@ -16,7 +16,7 @@ class WeakCell(NamedTuple):
 
     kind: str
     """``tet``, ``hex``, ..."""
-    index: int
+    row: int
     """Its row in ``mesh.cells[kind]``."""
     number: int
     """Its number in files."""
@@ -97,7 +97,8 @@ class CurveReport(_Certificate):
 
     def worst(self, count: int = 10) -> list[WeakCell]:
         """The cells with the smallest proven bounds of J/Jc, worst first."""
-        return [WeakCell(*own[:4], tuple(own[4])) for own in self._native.worst(count)]
+        found = self._native.worst(count)
+        return [WeakCell(kind, row, number, bound, (at[0], at[1], at[2])) for kind, row, number, bound, at in found]
 
 
 class CheckReport(_Certificate):

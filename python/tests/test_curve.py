@@ -49,10 +49,10 @@ def test_a_curved_mesh_tells_what_is_proven(weeble_p2):
     assert len(bounds) == len(weeble_p2.cells["tet"]) and bounds.min() >= report.min_jacobian > 0.5
     worst = report.worst(5)
     assert [own.min_jacobian for own in worst] == sorted(bounds)[:5] and worst[0].kind == "tet"
-    assert bounds[worst[0].index] == worst[0].min_jacobian
-    corners = weeble_p2.points[weeble_p2.cells["tet"][worst[0].index, :4]]
+    assert bounds[worst[0].row] == worst[0].min_jacobian
+    corners = weeble_p2.points[weeble_p2.cells["tet"][worst[0].row, :4]]
     assert np.allclose(corners.mean(axis=0), worst[0].position)
-    assert weeble_p2.numbers("tet")[worst[0].index] == worst[0].number
+    assert weeble_p2.numbers("tet")[worst[0].row] == worst[0].number
     assert "certified: every element valid" in str(report)
 
 
