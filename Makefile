@@ -89,15 +89,8 @@ wheel: setup-build ## dist/sagitta-*.whl for pip, with OpenCASCADE and HDF5 insi
 	VENV=.venv-wheel python/wheel dist
 	PYTHON="$(PYTHON)" python/try dist/sagitta-*.whl
 
-deb: setup-build ## dist/sagitta_*.deb for this Debian, with man pages and completions; installs cargo-deb where it is missing; minutes
-	cargo deb --version >/dev/null 2>&1 || cargo install cargo-deb
-	cargo build --profile dist --bin sagitta
-	mkdir -p target/package/man dist
-	$(TARGET)/dist/sagitta man target/package/man
-	$(TARGET)/dist/sagitta completions bash > target/package/sagitta.bash
-	$(TARGET)/dist/sagitta completions zsh > target/package/_sagitta
-	$(TARGET)/dist/sagitta completions fish > target/package/sagitta.fish
-	cargo deb --no-build --profile dist --output dist/
+deb: build ## dist/sagitta_*.deb for this release of Debian, with man pages and completions; needs dpkg-dev
+	packaging/deb $(SAGITTA) dist
 
 examples: setup-build ## run the programs in examples/
 	@for example in curve_in_memory check convert project; do \

@@ -136,7 +136,6 @@ def curve(
             call,
         )
     curved = CurvedMesh._of(native)
-    assert isinstance(curved, CurvedMesh)
     if not native.certified and not keep_invalid:
         why = "not all elements are proven valid and all walls free of folds (keep_invalid=True returns the mesh)"
         raise errors.NotCertified(f"{_called(given, name)}: {why}", curved)

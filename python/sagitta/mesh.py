@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from numpy.typing import ArrayLike
 
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["CurvedMesh", "Mesh", "Patch", "Patches", "read"]
 
 Name = str | os.PathLike[str]
+M = TypeVar("M", bound="Mesh")
 
 #: What reading files may use, as the program's defaults are.
 LIMITS: dict[str, Any] = {"cad_timeout": 300.0, "memory_limit": None}
@@ -110,7 +111,7 @@ class Mesh:
         self._native = _sagitta.from_arrays(coordinates(points), elements("cells", cells), named, node_order)
 
     @classmethod
-    def _of(cls, native: _sagitta.Mesh) -> Mesh:
+    def _of(cls: type[M], native: _sagitta.Mesh) -> M:
         mesh = cls.__new__(cls)
         mesh._native = native
         return mesh

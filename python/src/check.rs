@@ -29,7 +29,9 @@ pub(crate) fn check(
     let checked = work::run(py, None, None, move |_| {
         let read = |(held, path): (Option<Arc<Held>>, PathBuf)| match held {
             Some(held) => Ok((held, path)),
-            None => sagitta::formats::read_with(&path, &reading).map(|mesh| (Arc::new(Held::Plain(mesh)), path)),
+            None => {
+                sagitta::formats::read_with(&path, &reading).map(|mesh| (Arc::new(Held::Plain(Box::new(mesh))), path))
+            }
         };
         let (mesh, path) = read(mesh)?;
         let mesh = mesh.mesh();

@@ -22,7 +22,7 @@ use crate::work;
 
 /// What a Python object holds: a mesh, or one that was curved, with all that is known of it.
 pub(crate) enum Held {
-    Plain(sagitta::mesh::Mesh),
+    Plain(Box<sagitta::mesh::Mesh>),
     Curved(Box<(Curved, Job)>),
 }
 
@@ -231,7 +231,7 @@ pub(crate) fn solver_named(name: &str) -> PyResult<&'static formats::Solver> {
 pub(crate) fn read(py: Python<'_>, path: PathBuf, limits: Limits) -> PyResult<Mesh> {
     let reading = limits.reading(py, 1.0)?.mesh;
     let read = work::run(py, None, None, move |_| formats::read_with(&path, &reading))?;
-    read.map(|mesh| Mesh::new(Held::Plain(mesh))).map_err(|error| Failure::from(error).raise(py))
+    read.map(|mesh| Mesh::new(Held::Plain(Box::new(mesh)))).map_err(|error| Failure::from(error).raise(py))
 }
 
 /// Nodes of elements of one kind, as they come in.
@@ -275,7 +275,7 @@ pub(crate) fn from_arrays(
         }
     }
     let mesh = sagitta::mesh::Mesh::new(parts).map_err(|error| PyValueError::new_err(error.to_string()))?;
-    Ok(Mesh::new(Held::Plain(mesh)))
+    Ok(Mesh::new(Held::Plain(Box::new(mesh))))
 }
 
 /// The order of elements with so many nodes, which must be that of the others.

@@ -54,7 +54,7 @@ pub(crate) fn run<T: Send + 'static>(
     let (sender, mut receiver) = mpsc::channel();
     let stop = Arc::new(AtomicBool::new(false));
     let link = Link { sender: sender.clone(), stop: stop.clone() };
-    let pool = threads.map(|number| rayon_pool(number)).transpose()?;
+    let pool = threads.map(rayon_pool).transpose()?;
     let body = move || {
         let result = match &pool {
             Some(pool) => pool.install(|| work(link)),
