@@ -31,7 +31,7 @@ def of(mesh: Mesh, comm: Any) -> DolfinxMesh:
     """A DOLFINx mesh on ``comm``, distributed from its first process; the others may give any mesh of the same cells and order.
 
     Raises:
-        MeshError: cells of several kinds, of which DOLFINx takes one; prisms beyond P2, which it lacks.
+        MeshError: cells of several kinds, of which DOLFINx takes one; prisms and pyramids beyond P2, which it lacks.
     """
     from ..errors import MeshError
 
@@ -39,8 +39,8 @@ def of(mesh: Mesh, comm: Any) -> DolfinxMesh:
     if len(kinds) != 1 or kinds[0] not in _CELLS:
         raise MeshError(f"DOLFINx takes cells of one kind; the mesh has {', '.join(kinds)}")
     kind, axes = kinds[0], mesh.dimension
-    if kind == "prism" and mesh.order > 2:
-        raise MeshError(f"DOLFINx has no prisms of P{mesh.order}; P2 is its highest order")
+    if kind in ("prism", "pyramid") and mesh.order > 2:
+        raise MeshError(f"DOLFINx has no {kind}s of P{mesh.order}; P2 is its highest order")
     element = basix.ufl.element("Lagrange", _CELLS[kind], mesh.order, lagrange_variant=basix.LagrangeVariant.equispaced, shape=(axes,))
     first = comm.rank == 0
     cells = mesh.cells[kind, "basix"] if first else np.empty((0, mesh.cells[kind].shape[1]), dtype=np.int64)
