@@ -84,7 +84,7 @@ python-consumers: setup build ## the module's meshes in PyMFEM, NGSolve, and wit
 	    PYTHONPATH="$(PACKAGE)" "$$python" -m pytest -q -rs -p no:cacheprovider -c python/pyproject.toml python/consumers; \
 	done
 
-wheel: setup-build ## dist/sagitta-*.whl for pip, with OpenCASCADE and HDF5 inside, and tried in an empty environment; needs cmake; minutes
+wheel: setup-build ## dist/sagitta-*.whl for pip, with OpenCASCADE and HDF5 inside, and tried in an empty environment; minutes
 	@WANTED=python/requirements.txt VENV=.venv-wheel PYTHON="$(PYTHON)" .ci/venv
 	VENV=.venv-wheel python/wheel dist
 	PYTHON="$(PYTHON)" python/try dist/sagitta-*.whl

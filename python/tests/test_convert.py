@@ -26,6 +26,15 @@ def test_meshio_has_the_elements_and_writes_them_again(kind, p, tmp_path):
     assert (sagitta.read(tmp_path / "again.msh").cells[kind] == mesh.cells[kind]).all()
 
 
+def test_meshio_has_the_patches(weeble_p2):
+    theirs = weeble_p2.to_meshio()
+    assert {"wall", "farfield"} <= set(theirs.cell_sets) and (theirs.points == weeble_p2.points).all()
+    for name, patch in weeble_p2.patches.items():
+        blocks = zip(theirs.cells, theirs.cell_sets[name])
+        nodes = np.concatenate([block.data[own] for block, own in blocks if block.type == "triangle6"])
+        assert {*map(tuple, nodes[:, :3])} == {*map(tuple, patch.faces["triangle"][:, :3])}
+
+
 @curved(ELEMENTS)
 def test_pyvista_has_the_elements_where_they_are(kind, p):
     grid = element(kind, p).to_pyvista()

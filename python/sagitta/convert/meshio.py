@@ -7,13 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import meshio
+import numpy as np
 
 if TYPE_CHECKING:
     from ..mesh import Mesh
 
 
 def of(mesh: Mesh) -> meshio.Mesh:
-    """A ``meshio.Mesh`` with the points of ``mesh``, its cells and boundary elements, and its named patches as ``cell_sets``.
+    """A ``meshio.Mesh`` with the points of ``mesh``, its cells and boundary elements, and its named groups as ``cell_sets``.
 
     Raises:
         MeshError: pyramids of P3 and P4, which meshio does not have.
@@ -24,5 +25,10 @@ def of(mesh: Mesh) -> meshio.Mesh:
         raise MeshError(f"meshio has no pyramids of P{mesh.order}: write a VTU or MSH file")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "mesh.msh"
-        mesh.write(path)
-        return meshio.read(path)
+        mesh.write(path, msh_version="2.2")  # of 4.1 meshio refuses files in which some elements have a group and others none
+        theirs = meshio.read(path)
+    groups = theirs.cell_data.get("gmsh:physical")
+    for name, (number, dimension) in theirs.field_data.items() if groups else ():
+        own = zip(theirs.cells, groups)
+        theirs.cell_sets[name] = [np.flatnonzero((tags == number) & (block.dim == dimension)) for block, tags in own]
+    return theirs
