@@ -15,10 +15,13 @@ TEST_PROFILE ?= release
 
 TARGET := $(or $(CARGO_TARGET_DIR),target)
 SAGITTA := $(TARGET)/release/sagitta
+# Where the tests' profile puts what it builds, and the Python package made of it.
+BUILT := $(TARGET)/$(patsubst dev,debug,$(patsubst test,debug,$(TEST_PROFILE)))
+PACKAGE := $(abspath $(TARGET))/python
 
 # The steps of a target run in their order, also under -j.
 .NOTPARALLEL:
-.PHONY: help setup setup-build build demo venv test lint unit examples fuzz fuzz-coverage parsers bench oracle table engines picture bench-cases consumers solvers convergence figures reliability same-bits gauntlet-3d gauntlet-2d schema doc
+.PHONY: help setup setup-build build demo venv test lint unit python python-consumers wheel deb examples fuzz fuzz-coverage parsers bench oracle table engines picture bench-cases consumers solvers convergence figures reliability same-bits gauntlet-3d gauntlet-2d schema doc
 
 help: ## this list
 	@echo "sagitta curves linear viscous CFD meshes onto their CAD. Targets:"
@@ -49,7 +52,7 @@ else
 	@"$(SAGITTA_PYTHON)" -c 'import gmsh, meshio, numpy, scipy'
 endif
 
-test: setup venv lint unit examples ## everything that CI checks: format, clippy, docs, tests, doctests, examples
+test: setup venv lint unit python examples ## everything that CI checks: format, clippy, docs, tests, doctests, Python, examples
 
 lint: setup-build ## format, clippy and rustdoc, without warnings
 	cargo fmt --all -- --check
@@ -65,6 +68,29 @@ unit: setup-build venv ## tests and doctests, by cargo-nextest where it is insta
 	    set -x; cargo test --workspace --lib --bins --tests --profile $(TEST_PROFILE); \
 	fi
 	SAGITTA_PYTHON="$(SAGITTA_PYTHON)" cargo test --workspace --doc --profile $(TEST_PROFILE)
+
+# Built with the tests, so that features of crates are those that their build has.
+python: setup-build venv ## the Python module: its tests, and its types by mypy
+	cargo build --workspace --lib --bins --tests --profile $(TEST_PROFILE)
+	python/assemble $(BUILT) $(PACKAGE)
+	PYTHONPATH="$(PACKAGE)" "$(SAGITTA_PYTHON)" -m pytest -q -p no:cacheprovider -c python/pyproject.toml python/tests
+	cd python && "$(SAGITTA_PYTHON)" -m mypy --cache-dir "$(PACKAGE)/mypy"
+
+python-consumers: setup build ## the module's meshes in PyMFEM, NGSolve, and with DOLFINX=PYTHON in DOLFINx: integrals of polynomials; minutes
+	@WANTED=tests/consumers/requirements.txt VENV=.venv-consumers PYTHON="$(PYTHON)" .ci/venv
+	cargo build --release -p sagitta -p sagitta-python --lib --bins
+	python/assemble $(TARGET)/release $(PACKAGE)
+	for python in .venv-consumers/bin/python $(DOLFINX); do \
+	    PYTHONPATH="$(PACKAGE)" "$$python" -m pytest -q -rs -p no:cacheprovider -c python/pyproject.toml python/consumers; \
+	done
+
+wheel: setup-build ## dist/sagitta-*.whl for pip, with OpenCASCADE and HDF5 inside, and tried in an empty environment; minutes
+	@WANTED=python/requirements.txt VENV=.venv-wheel PYTHON="$(PYTHON)" .ci/venv
+	VENV=.venv-wheel python/wheel dist
+	PYTHON="$(PYTHON)" python/try dist/sagitta-*.whl
+
+deb: build ## dist/sagitta_*.deb for this release of Debian, with man pages and completions; needs dpkg-dev
+	packaging/deb $(SAGITTA) dist
 
 examples: setup-build ## run the programs in examples/
 	@for example in curve_in_memory check convert project; do \

@@ -94,6 +94,17 @@ pub(super) fn info() -> String {
     below(examples, &[DONE, COULD_NOT_RUN])
 }
 
+pub(super) fn completions() -> String {
+    let examples = "
+  sagitta completions bash
+  sagitta completions zsh";
+    below(examples, &[DONE, COULD_NOT_RUN])
+}
+
+pub(super) fn man() -> String {
+    below("\n  mkdir -p man && sagitta man man && man -l man/sagitta-curve.1", &[DONE, COULD_NOT_RUN])
+}
+
 #[cfg(feature = "cad")]
 pub(super) fn groups() -> String {
     let examples = "

@@ -7,6 +7,7 @@
 //! could not be written; 130 interrupted before there was anything to keep, or twice.
 
 mod check;
+mod completions;
 mod convert;
 #[cfg_attr(not(feature = "cad"), allow(dead_code))] // some codes are of commands that need CAD
 mod exit;
@@ -16,6 +17,7 @@ mod form;
 mod help;
 mod info;
 mod input;
+mod man;
 mod output;
 mod signals;
 mod threads;
@@ -26,7 +28,7 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 #[cfg(feature = "cgns")]
 use crate::formats::cgns;
@@ -60,6 +62,12 @@ enum Command {
     /// Describe a CAD, mesh or linkage file
     #[command(after_help = help::info())]
     Info(info::Options),
+    /// Print the completions of a shell
+    #[command(after_help = help::completions())]
+    Completions(completions::Options),
+    /// Write the manual pages of all commands
+    #[command(after_help = help::man())]
+    Man(man::Options),
 }
 
 /// Reads a file in a child process.
@@ -117,5 +125,7 @@ fn run_command(command: &Command) -> Result<u8, output::Failure> {
         Command::Convert(options) => convert::run(options),
         Command::Explain(options) => explain::run(options),
         Command::Info(options) => info::run(options),
+        Command::Completions(options) => completions::run(options, Program::command()),
+        Command::Man(options) => man::run(options, Program::command()),
     }
 }

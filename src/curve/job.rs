@@ -70,9 +70,24 @@ impl Job {
         if !formats::is_mesh(&self.mesh)? {
             self.read_mesh()?; // says so before the CAD is waited for
         }
-        let (linear, cad) = rayon::join(|| self.read_mesh(), || self.read_cad(self.cad_scale.unwrap_or(1.0)));
-        let (linear, cad) = (linear?, cad?);
+        let (linear, cad) = rayon::join(|| self.read_mesh(), || self.read_first());
+        self.curve(linear?, cad?, clock)
+    }
 
+    /// As [`Job::run`], on a mesh that is in memory: [`Job::mesh`] is what messages, linkage file and report call it.
+    ///
+    /// # Errors
+    /// Those of [`Job::run`].
+    pub fn run_on(&self, linear: Mesh, observer: &mut dyn Observer) -> Result<Curved, JobError> {
+        let mut clock = Clock::new(observer);
+        clock.step(Step::Read);
+        let linear = self.checked(linear)?;
+        let cad = self.read_first()?;
+        self.curve(linear, cad, clock)
+    }
+
+    /// The steps that follow reading.
+    fn curve(&self, linear: Mesh, cad: Model, mut clock: Clock) -> Result<Curved, JobError> {
         clock.step(Step::Associate);
         let associate = |cad: &Model| self.associated(&linear, cad);
         let associated = self.scaled(cad, associate)?.0;
@@ -86,7 +101,7 @@ impl Job {
     pub fn association(&self) -> Result<Preview, JobError> {
         let linear = self.read_mesh()?;
         let associate = |cad: &Model| self.associated(&linear, cad);
-        let (own, cad) = self.scaled(self.read_cad(self.cad_scale.unwrap_or(1.0))?, associate)?;
+        let (own, cad) = self.scaled(self.read_first()?, associate)?;
         let Classified { candidates, association, inference, source } = &own.classified;
         let mut summary = associate::summary(source, &linear, &own.boundary, &cad, candidates, inference.as_ref());
         summary.notes = linear.notes().iter().chain(&association.notes).cloned().collect();
@@ -98,11 +113,20 @@ impl Job {
     }
 
     fn read_mesh(&self) -> Result<Mesh, JobError> {
-        let linear = formats::read_with(&self.mesh, &self.mesh_reading)?;
+        self.checked(formats::read_with(&self.mesh, &self.mesh_reading)?)
+    }
+
+    /// A mesh that can be curved, and that the solver takes.
+    fn checked(&self, linear: Mesh) -> Result<Mesh, JobError> {
         if let Some((file, solver)) = &self.solver {
             formats::check_solver(file, solver, &linear, self.settings.order)?;
         }
         checked(linear, self.settings.surface).map_err(|cause| self.error(cause))
+    }
+
+    /// The CAD, in its own unit where the one that fits is not known yet.
+    fn read_first(&self) -> Result<Model, JobError> {
+        self.read_cad(self.cad_scale.unwrap_or(1.0))
     }
 
     fn read_cad(&self, scale: f64) -> Result<Model, JobError> {

@@ -34,6 +34,7 @@ pub mod below;
 pub mod checkpoint;
 mod checkpointing;
 pub mod curvability;
+mod deadline;
 mod driver;
 mod error;
 mod input;
@@ -55,6 +56,7 @@ pub mod wall;
 pub mod wall_state;
 
 pub use checkpointing::Checkpointing;
+pub use deadline::Deadline;
 pub use driver::{Curved, curve};
 pub use error::{Error, JobError};
 pub use job::{Job, Preview};

@@ -158,8 +158,9 @@ fn patch(curved: &Curved, entity: EntityKey) -> PatchReport {
     }
 }
 
-/// The largest distance of a boundary face from the CAD that it is associated with.
-pub(super) fn distance(curved: &Curved, face: usize) -> Option<f64> {
+/// The largest distance of a boundary face, by its index in [`Curved::boundary`], from the CAD that it is associated with.
+#[must_use]
+pub fn distance(curved: &Curved, face: usize) -> Option<f64> {
     let Classification::Surface(surface) = curved.association.faces[face] else { return None };
     let group = &curved.association.surfaces[surface].group;
     let (order, cell) = (curved.mesh.order(), curved.boundary.faces[face].cell);

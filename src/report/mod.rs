@@ -40,7 +40,7 @@ pub use check::CheckReport;
 pub use schema::schemas;
 #[cfg(feature = "cad")]
 pub use {
-    build::report,
+    build::{distance, report},
     curve::Report,
     feet::{CadReport, FeetReport, end_of},
     fields::fields,

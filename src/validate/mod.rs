@@ -28,9 +28,9 @@ use linkage_schema::{Code, Findings, ModelLinks, Position, ReadError, Resolution
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::associate::{Numbering, ON_CAD, models_of, sides};
+use crate::associate::{Numbering, ON_CAD, ReadLinearError, models_of, read_linear, sides};
 use crate::formats;
-use crate::mesh::{Boundary, Mesh};
+use crate::mesh::Boundary;
 pub use coverage::Coverage;
 pub use distances::Measured;
 use linked_mesh::LinkedMesh;
@@ -65,11 +65,9 @@ pub enum ValidateError {
     #[error(transparent)]
     Linkage(#[from] ReadError),
     #[error(transparent)]
-    Mesh(#[from] formats::Error),
+    Mesh(#[from] ReadLinearError),
     #[error(transparent)]
     Cad(#[from] cad::ReadError),
-    #[error("{}: is of order {order}; linkage files refer to linear meshes: give the one that it was made from", mesh.display())]
-    NotLinear { mesh: PathBuf, order: crate::element::Order },
 }
 
 /// What was found.
@@ -245,18 +243,6 @@ fn with_cad(
     wrong_sides::check(linked, models, model, geometry, tolerance, findings);
     parameters::check(linked, models, model, geometry, tolerance, findings);
     sharp_edges::check(linked, models, model, geometry, job.tolerance, findings);
-}
-
-/// Reads a mesh that linkage can speak of: a linear one.
-///
-/// # Errors
-/// [`ValidateError::Mesh`], [`ValidateError::NotLinear`].
-pub fn read_linear(path: &Path, reading: &formats::ReadOptions) -> Result<Mesh, ValidateError> {
-    let mesh = formats::read_with(path, reading)?;
-    if mesh.order() != crate::element::Order::LINEAR {
-        return Err(ValidateError::NotLinear { mesh: path.to_owned(), order: mesh.order() });
-    }
-    Ok(mesh)
 }
 
 /// A file of which nothing could be read, as a finding.

@@ -43,6 +43,24 @@ fn help_of_every_command_has_its_examples_and_exit_codes() {
     }
 }
 
+#[test]
+fn completions_and_manual_pages_know_every_command() {
+    for shell in ["bash", "zsh", "fish"] {
+        let script = sagitta(["completions", shell]).expect(0).stdout;
+        assert!(COMMANDS.iter().all(|command| script.contains(command)), "{shell}");
+        assert!(script.contains("require-all") && !script.contains("__read"), "{shell}");
+    }
+    let dir = tempfile::tempdir().unwrap();
+    sagitta([OsString::from("man"), dir.path().into()]).expect(0);
+    for command in COMMANDS {
+        let page = std::fs::read_to_string(dir.path().join(format!("sagitta-{command}.1"))).unwrap();
+        assert!(page.contains(".TH") && page.contains("Exit codes"), "{command}");
+    }
+    assert!(dir.path().join("sagitta.1").exists());
+    let told = sagitta([OsString::from("man"), dir.path().join("absent").into()]).expect(2);
+    assert!(told.stderr.contains("absent"), "{}", told.stderr);
+}
+
 /// Shell commands that call the program: lines that begin with its name, with the lines that they go on in.
 fn examples(text: &str) -> Vec<String> {
     let mut found: Vec<String> = Vec::new();

@@ -53,6 +53,24 @@ fn bare(name: &str) -> &str {
 }
 
 impl Model {
+    /// The entities that some references mean, each once; all faces and free edges where there are no references.
+    ///
+    /// # Errors
+    /// Those of [`Model::resolve`].
+    pub fn select(&self, references: &[String]) -> Result<Vec<EntityId>, ReferenceError> {
+        if references.is_empty() {
+            let free = self.edges().iter().filter(|edge| edge.faces.is_empty() && !edge.degenerate);
+            return Ok(self.faces().iter().map(|face| face.id.into()).chain(free.map(|edge| edge.id.into())).collect());
+        }
+        let mut all = Vec::new();
+        for reference in references {
+            all.extend(self.resolve(reference)?);
+        }
+        all.sort_unstable();
+        all.dedup();
+        Ok(all)
+    }
+
     /// The entities that a reference means: one, or the members of a ready group, or the edges between two faces.
     ///
     /// # Errors

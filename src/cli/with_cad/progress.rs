@@ -7,16 +7,12 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::cli::output::message;
 use crate::cli::signals;
-use crate::curve::{Observer, Step};
+use crate::curve::{Deadline, Observer, Step};
 use crate::element::Order;
 use crate::smooth::Progress;
 
 /// Plain lines come no more often than this.
 pub(super) const INTERVAL: Duration = Duration::from_secs(2);
-
-/// The share of a time limit after which smoothing ends while elements are inverted; the rest is left to recovery. The orders below end, one
-/// after the other, within this share as well, so that the order asked for has its time.
-const SMOOTHING: f64 = 0.6;
 
 /// Why smoothing ended before it was done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,9 +32,7 @@ impl std::fmt::Display for Stop {
 
 /// Shows how the work goes on, and may end the smoothing on an interrupt or after a time limit.
 pub(super) struct Monitor {
-    limit: Option<Duration>,
-    /// The order that is asked for, where there is a limit.
-    last_order: Option<Order>,
+    deadline: Option<Deadline>,
     /// Why smoothing was ended, once it was.
     pub(super) stop: Option<Stop>,
     bar: Option<ProgressBar>,
@@ -55,8 +49,7 @@ impl Monitor {
     pub(super) fn new(quiet: bool) -> Monitor {
         let bar = (!quiet && std::io::stderr().is_terminal()).then(spinner);
         Monitor {
-            limit: None,
-            last_order: None,
+            deadline: None,
             stop: None,
             bar,
             quiet,
@@ -70,16 +63,7 @@ impl Monitor {
 
     /// Ends smoothing after a time limit, too, and that at orders below `order` after their share of it.
     pub(super) fn stoppable(self, limit: Option<Duration>, order: Order) -> Monitor {
-        Monitor { limit, last_order: Some(order), ..self }
-    }
-
-    /// The share of the time limit at which the order in work has to end its smoothing.
-    fn share(&self, inverted: usize) -> f64 {
-        let steps = |order: Option<Order>| order.map_or(1.0, |order| order.get().saturating_sub(1).max(1) as f64);
-        if self.order < self.last_order {
-            return SMOOTHING * steps(self.order) / steps(self.last_order);
-        }
-        if self.step == Some(Step::Smooth) && inverted > 0 { SMOOTHING } else { 1.0 }
+        Monitor { deadline: Some(Deadline::new(limit, order)), ..self }
     }
 
     /// Takes the live line away.
@@ -111,6 +95,7 @@ fn spinner() -> ProgressBar {
 impl Observer for Monitor {
     fn order(&mut self, order: Order) {
         self.order = Some(order);
+        self.deadline.iter_mut().for_each(|deadline| deadline.order(order));
     }
 
     fn step(&mut self, step: Step) {
@@ -121,6 +106,7 @@ impl Observer for Monitor {
             self.smoothing = Some(Instant::now());
         }
         self.step = Some(step);
+        self.deadline.iter_mut().for_each(|deadline| deadline.step(step));
         let order = self.order.map_or(String::new(), |order| format!(", {order}"));
         if step == Step::Recover {
             return self.show(format!("{}{order}", step.name()));
@@ -150,15 +136,14 @@ impl Observer for Monitor {
                 progress.inverted
             ));
         }
-        let share = self.share(progress.inverted);
-        let is_over = |limit: &Duration| self.start.elapsed() >= limit.mul_f64(share);
-        let over = self.limit.filter(is_over).map(Stop::TimeLimit);
+        let over = self.deadline.as_ref().filter(|deadline| deadline.is_over(progress.inverted));
+        let over = over.and_then(|deadline| deadline.limit).map(Stop::TimeLimit);
         let stop = if signals::wished() { Some(Stop::Interrupted) } else { over };
         self.stop = stop.or(self.stop);
         stop.is_none()
     }
 
     fn may_recover(&mut self) -> bool {
-        !signals::wished() && self.limit.is_none_or(|limit| self.start.elapsed() < limit)
+        !signals::wished() && self.deadline.as_ref().is_none_or(Deadline::leaves_time)
     }
 }

@@ -5,7 +5,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use cad::{Aabb, EntityId, Foot, Group, Model};
+use cad::{Aabb, Foot, Group, Model};
 use clap::Args;
 use glam::DVec3;
 
@@ -92,7 +92,7 @@ fn project(options: &Options, monitor: &Monitor) -> Result<(Vec<Option<Foot>>, F
     monitor.show(format!("{} points; reading the CAD", xs.len()));
     let model = Model::read(&options.cad, &in_a_child(options.cad_timeout, options.cad_scale))?;
     let references: Vec<String> = options.group.iter().flat_map(|list| split(list)).map(str::to_owned).collect();
-    let entities = entities(&model, &references)?;
+    let entities = model.select(&references)?;
     let group = Group::of(&model, &entities).map_err(|error| format!("{}: {error}", options.cad.display()))?;
     let start = Instant::now();
     let feet = closest(&group, &xs, monitor);
@@ -127,20 +127,6 @@ fn read_points(path: &Path) -> Result<Vec<DVec3>, Failure> {
         (name, points::read(BufReader::new(file), most))
     };
     read.map_err(|flaw| format!("{name}, {flaw}").into())
-}
-
-fn entities(model: &Model, references: &[String]) -> Result<Vec<EntityId>, cad::ReferenceError> {
-    if references.is_empty() {
-        let free = model.edges().iter().filter(|edge| edge.faces.is_empty() && !edge.degenerate);
-        return Ok(model.faces().iter().map(|face| face.id.into()).chain(free.map(|edge| edge.id.into())).collect());
-    }
-    let mut all = Vec::new();
-    for reference in references {
-        all.extend(model.resolve(reference)?);
-    }
-    all.sort_unstable();
-    all.dedup();
-    Ok(all)
 }
 
 /// The feet, chunk by chunk, so that progress can be shown.

@@ -3,15 +3,15 @@
 use crate::element::Cell;
 
 /// What MFEM says of one cell.
-pub(super) struct Geometry {
+pub(in crate::formats) struct Geometry {
     pub(super) cell: Cell,
     /// Number in files.
     pub(super) code: u8,
     /// Corner pairs of the edges, in the order of counting.
-    pub(super) edges: &'static [[u8; 2]],
+    pub(in crate::formats) edges: &'static [[u8; 2]],
     /// Corner loops of the faces, in the order of counting; nodes inside a face are counted along the loop of the first element
     /// that has it.
-    pub(super) faces: &'static [&'static [u8]],
+    pub(in crate::formats) faces: &'static [&'static [u8]],
 }
 
 const fn flat(cell: Cell, code: u8, edges: &'static [[u8; 2]]) -> Geometry {
@@ -50,7 +50,7 @@ static GEOMETRIES: [Geometry; 8] = [
 ];
 
 /// What MFEM says of a cell.
-pub(super) fn of(cell: Cell) -> &'static Geometry {
+pub(in crate::formats) fn of(cell: Cell) -> &'static Geometry {
     // Every cell stands in the list; the first answers for what there is not.
     GEOMETRIES.iter().find(|own| own.cell == cell).unwrap_or(&GEOMETRIES[0])
 }

@@ -14,6 +14,8 @@ mod read;
 mod sets;
 mod write;
 
+pub(super) use geometry::of as geometry_of;
+
 use super::detect::{Head, Refusal, Verdict};
 use super::format::{Format, Holds, Reader, Writer};
 use super::loss::Loss;

@@ -7,7 +7,7 @@
 mod draft;
 mod fault;
 mod names;
-mod node_order;
+pub(super) mod node_order;
 mod node_tags;
 mod outline;
 mod read22;

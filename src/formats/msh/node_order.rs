@@ -3,7 +3,7 @@
 use crate::formats::node_order::{Interior, LINE, Layout, NodeOrder, POINT, Rule, TRIANGLE, by_rules};
 
 /// The order of MSH files of all versions: that of `setOrder` on single elements.
-pub(super) static ORDER: NodeOrder = NodeOrder::new(|cell, order| Some(by_rules(&LAYOUT, cell, order)));
+pub(in crate::formats) static ORDER: NodeOrder = NodeOrder::new(|cell, order| Some(by_rules(&LAYOUT, cell, order)));
 
 static LAYOUT: Layout = [
     POINT,
