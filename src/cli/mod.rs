@@ -17,6 +17,9 @@ mod help;
 mod info;
 mod input;
 mod output;
+mod page;
+mod picture;
+mod report;
 mod signals;
 mod threads;
 #[cfg(feature = "cad")]
@@ -60,6 +63,12 @@ enum Command {
     /// Describe a CAD, mesh or linkage file
     #[command(after_help = help::info())]
     Info(info::Options),
+    /// Draw a mesh: its curved boundary, a section, its worst elements; no display is needed
+    #[command(after_help = help::picture())]
+    Picture(picture::Options),
+    /// Make a page for a browser of a JSON report and its mesh
+    #[command(after_help = help::report())]
+    Report(report::Options),
 }
 
 /// Reads a file in a child process.
@@ -117,5 +126,7 @@ fn run_command(command: &Command) -> Result<u8, output::Failure> {
         Command::Convert(options) => convert::run(options),
         Command::Explain(options) => explain::run(options),
         Command::Info(options) => info::run(options),
+        Command::Picture(options) => picture::run(options),
+        Command::Report(options) => report::run(options),
     }
 }

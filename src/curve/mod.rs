@@ -61,4 +61,4 @@ pub use job::{Job, Preview};
 pub use observer::{Observer, Step};
 pub use orders::LowerOrder;
 pub use settings::Settings;
-pub use trace::Trace;
+pub use trace::{Sweep, Trace};

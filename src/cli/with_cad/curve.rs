@@ -14,12 +14,15 @@ use crate::cli::exit::{DONE, NOT_CERTIFIED, OFF_CAD, STOPPED};
 use crate::cli::files::Files;
 use crate::cli::form::{self, Form};
 use crate::cli::output::{Beside, Failure, message, print, write_json};
+use crate::cli::page::{command, html_name, write_page};
 use crate::cli::{input, threads};
 use crate::curve::{Checkpointing, Curved, Job, Preview, Settings, Trace};
 use crate::element::Order;
 use crate::formats::{self, Field, WriteOptions};
+use crate::html::Page;
 use crate::mesh::{Inconsistent, Mesh};
-use crate::report::{fields, left_open, report, undecided};
+use crate::report::{Report, Run, face_distances, fields, left_open, measures, report, sweeps, undecided};
+use crate::scene::Measures;
 use crate::smooth;
 
 /// Options of `sagitta curve`.
@@ -54,6 +57,9 @@ pub(in crate::cli) struct Options {
     /// Also write the report as JSON
     #[arg(long, value_name = "R.json")]
     report: Option<PathBuf>,
+    /// Also write a page for any browser: all figures, and the mesh in space with its worst elements
+    #[arg(long, value_name = "FILE.html", value_parser = html_name, conflicts_with = "dry_run")]
+    html: Option<PathBuf>,
     /// Write the boundary faces that belong to the CAD and are not on it as a mesh to look at: a group a cause, and their distance
     #[arg(long, value_name = "FILE.vtu")]
     open_faces: Option<PathBuf>,
@@ -159,9 +165,16 @@ impl Options {
             .reads("--resume", self.resume.as_ref())
             .writes_mesh(written(&self.output), self.form.solver())
             .writes("--report", self.report.as_ref())
+            .writes("--html", self.html.as_ref())
             .writes("--open-faces", self.open_faces.as_ref())
             .writes("--trace", written(&self.trace))
             .writes("--checkpoint", written(&self.checkpoint))
+    }
+
+    /// Whether a file is asked for that tells of the measures of the elements.
+    fn tells_measures(&self) -> bool {
+        let shown = self.output.as_ref().is_some_and(|path| formats::shows_fields(path, self.form.solver()));
+        shown || self.report.is_some() || self.html.is_some()
     }
 
     fn job(&self) -> Job {
@@ -224,8 +237,10 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     };
     // The mesh first; and the rest also where the mesh could not be written.
     let missing = missing(options, &curved).filter(|_| !options.keep_invalid);
-    let written = if missing.is_none() { write(options, output, &curved) } else { Ok(Vec::new()) };
+    let measures = if options.tells_measures() { measures(&curved) } else { Measures::default() };
+    let written = if missing.is_none() { write(options, output, &curved, &measures) } else { Ok(Vec::new()) };
     let traced = options.trace.as_ref().map_or(Ok(()), |path| trace.write(path, &curved.smoothed));
+    let swept = sweeps(&trace.sweeps(&curved.smoothed));
     monitor.finish();
     let mut beside = Beside::default();
     beside.tell(kept);
@@ -233,9 +248,13 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     if let Some(path) = &options.open_faces {
         beside.tell(write_left_open(path, left_open(&curved)));
     }
-    let report = report(&job, &curved);
+    let mut report = report(&job, &curved, &measures, Run::ending_now(command()));
+    report.sweeps = swept;
     if let Some(path) = &options.report {
         beside.tell(write_json(path, &report));
+    }
+    if let Some(path) = &options.html {
+        beside.tell(page(path, &report, &curved, &measures));
     }
     let stop = monitor.stop.map_or_else(String::new, |stop| format!("\n{stop}"));
     beside.tell(print(&format!("{report}{stop}")));
@@ -291,9 +310,16 @@ fn write_left_open(path: &Path, faces: Result<(Mesh, Vec<Field>), Inconsistent>)
     Ok(())
 }
 
+/// Writes the page.
+fn page(path: &Path, report: &Report, curved: &Curved, measures: &Measures) -> Result<(), Failure> {
+    let distances = face_distances(curved);
+    let page = Page::new(report, &curved.mesh, measures)?;
+    write_page(path, &page.text(|face| distances.get(&face).copied())?)
+}
+
 /// Writes the mesh; returns notes.
-fn write(options: &Options, output: &Path, curved: &Curved) -> Result<Vec<String>, Failure> {
-    let fields = if formats::shows_fields(output, options.form.solver()) { fields(curved) } else { Vec::new() };
+fn write(options: &Options, output: &Path, curved: &Curved, measures: &Measures) -> Result<Vec<String>, Failure> {
+    let fields = if formats::shows_fields(output, options.form.solver()) { fields(curved, measures) } else { Vec::new() };
     Ok(options.form.write(output, &curved.mesh, &fields)?)
 }
 
