@@ -11,7 +11,7 @@ use crate::cli::files::Files;
 use crate::cli::output::{Beside, Failure, print};
 use crate::formats;
 use crate::picture::{self, Colouring, PIXELS, Settings, VIEWS, View};
-use crate::scene::{Axis, Cut};
+use crate::scene::{Axis, CutPlane};
 
 /// Options of `sagitta picture`.
 #[derive(Args)]
@@ -27,9 +27,9 @@ pub(super) struct Options {
     /// What colours say
     #[arg(long, value_name = "WHAT", value_enum, default_value_t)]
     color: Colouring,
-    /// Cut the volume by the plane on which this coordinate has this value, as z:0.25; what is before it is left out
+    /// CutPlane the volume by the plane on which this coordinate has this value, as z:0.25; what is before it is left out
     #[arg(long, value_name = "x|y|z:VALUE", value_parser = cut, allow_hyphen_values = true)]
-    cut: Option<Cut>,
+    cut: Option<CutPlane>,
     /// Mark and list so many of the elements with the smallest J/J_c
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u64).range(0..=50))]
     worst: u64,
@@ -52,12 +52,12 @@ fn png_name(text: &str) -> Result<PathBuf, String> {
 }
 
 /// A plane that cuts.
-fn cut(text: &str) -> Result<Cut, String> {
+fn cut(text: &str) -> Result<CutPlane, String> {
     let wrong = || format!("{text:?} is no plane: give an axis and a value, as z:0.25");
     let (axis, value) = text.split_once([':', '=']).ok_or_else(wrong)?;
     let axis = Axis::of(axis).ok_or_else(wrong)?;
     let at = value.parse::<f64>().ok().filter(|value| value.is_finite()).ok_or_else(wrong)?;
-    Ok(Cut { axis, at })
+    Ok(CutPlane { axis, at })
 }
 
 /// Pixels across and down.

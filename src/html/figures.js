@@ -43,7 +43,7 @@ function table(pointer, columns, limit = 200) {
   return box;
 }
 
-function section(title, ...children) {
+function chapter(title, ...children) {
   const own = element("section", {}, element("h2", {}, title), ...children);
   document.getElementById("figures").append(own);
 }
@@ -87,7 +87,7 @@ function measures() {
   const row = (own, n) => element("tr", {}, ...["cell", "measure", "count", "unknown", "mean"].map((key) => value(`/measures/${n}/${key}`)),
     ...own.percentiles.map((_, k) => value(`/measures/${n}/percentiles/${k}/value`)));
   const head = element("tr", {}, ...titles.map((title) => element("th", {}, title)));
-  section("Measures of the elements",
+  chapter("Measures of the elements",
     element("p", { class: "small" }, "Values that so many percent of the elements do not exceed. J/J_c and scaled Jacobian: a proven lower bound of every element; C_WCN and C_JAC: worst of a survey. Bars by the logarithm of the count."),
     element("div", { class: "scroll" }, element("table", {}, head, ...all.map(row))),
     element("div", { class: "charts" }, ...all.map(histogram)));
@@ -99,28 +99,28 @@ function given() {
     ["/order", "order"], ["/nodes/linear", "nodes of the linear mesh"], ["/nodes/curved", "nodes"], ["/threads", "threads"], ["/peak_memory", "peak memory, bytes"]];
   const shown = rows.filter(([pointer]) => at(pointer) !== undefined && at(pointer) !== null);
   const command = (pointer) => element("td", { class: "text", "data-pointer": pointer, "data-value": JSON.stringify(at(pointer)) }, element("code", {}, at(pointer).join(" ")));
-  section("What was given", element("table", {}, ...shown.map(([pointer, title]) =>
+  chapter("What was given", element("table", {}, ...shown.map(([pointer, title]) =>
     element("tr", {}, element("th", {}, title), pointer === "/run/command" ? command(pointer) : value(pointer)))));
 }
 
 function curving() {
   if (!report.patches) return;
-  section("Patches: what lies on which CAD, and how far from it", table("/patches", [["entity", "entity"], ["names", "names"], ["cad_groups", "on the CAD"], ["faces", "faces"],
+  chapter("Patches: what lies on which CAD, and how far from it", table("/patches", [["entity", "entity"], ["names", "names"], ["cad_groups", "on the CAD"], ["faces", "faces"],
     ["cad_distance_max", "largest distance"], ["node_move_max", "largest move of a linear node"]]),
     element("p", { class: "small" }, "Lengths in the mesh's unit; distances at (3p)² samples a face."));
-  section("Boundary faces off the CAD", element("h3", {}, "taken back or released for valid elements"),
+  chapter("Boundary faces off the CAD", element("h3", {}, "taken back or released for valid elements"),
     table("/off_cad", [["element", "face"], ["entity", "entity"], ["cad_distance", "distance"], ["position", "place"]]),
     element("h3", {}, "straight, as it could not be decided what they lie on"),
     table("/open_faces", [["element", "face"], ["entity", "entity"], ["cause", "cause"], ["remedy", "remedy"], ["position", "place"]]));
   const costs = (where) => ["c_wcn", "c_jac", "inverted"].map((key) => value(`${where}/${key}`));
   const head = ["order", "sweeps", "C_WCN before", "C_JAC before", "inverted before", "C_WCN after", "C_JAC after", "inverted after"];
   const row = (order, where) => element("tr", {}, order, value(`${where}/sweeps`), ...costs(`${where}/start`), ...costs(`${where}/end`));
-  section("Smoothing: smallest costs", element("table", {}, element("tr", {}, ...head.map((title) => element("th", {}, title))),
+  chapter("Smoothing: smallest costs", element("table", {}, element("tr", {}, ...head.map((title) => element("th", {}, title))),
     ...report.smoothing.lower_orders.map((_, n) => row(value(`/smoothing/lower_orders/${n}/order`), `/smoothing/lower_orders/${n}`)),
     row(value("/order"), "/smoothing")), convergence());
-  section("Grid lines off the walls: angles in degrees", element("table", {}, element("tr", {}, ...["mesh", "lines", "angles", "99 % are at most", "largest"].map((title) => element("th", {}, title))),
+  chapter("Grid lines off the walls: angles in degrees", element("table", {}, element("tr", {}, ...["mesh", "lines", "angles", "99 % are at most", "largest"].map((title) => element("th", {}, title))),
     ...["curved", "linear"].map((which) => element("tr", {}, element("td", {}, which), ...["lines", "angles", "p99", "max"].map((key) => value(`/grid_line_angles/${which}/${key}`))))));
-  section("Seconds a step", table("/seconds", [["step", "step"], ["seconds", "seconds"]]));
+  chapter("Seconds a step", table("/seconds", [["step", "step"], ["seconds", "seconds"]]));
 }
 
 /** The smallest costs over the sweeps of all orders, where they were followed. */
@@ -148,13 +148,13 @@ function tell() {
   const mesh = report.mesh || (report.input && report.input.mesh);
   document.title = `sagitta: ${mesh}`;
   document.getElementById("subject").textContent = `${mesh}: P${report.order}, ${counts}`;
-  section("Certificate", element("table", {}, ...[["j_over_jc", "smallest J/J_c"], ["scaled_jacobian", "smallest scaled Jacobian"]].map(([key, title]) =>
+  chapter("Certificate", element("table", {}, ...[["j_over_jc", "smallest J/J_c"], ["scaled_jacobian", "smallest scaled Jacobian"]].map(([key, title]) =>
     element("tr", {}, element("th", {}, title), element("td", {}, "proven"), value(`/certificate/${key}/lower`), element("td", {}, "attained"), value(`/certificate/${key}/upper`)))),
     element("h3", {}, "elements not proven valid, and the weakest"),
     table("/certificate/worst", [["element", "element"], ["cell", "cell"], ["verdict", "verdict"], ["j_over_jc/lower", "J/J_c proven"], ["j_over_jc/upper", "attained"], ["position", "place of its smallest Jacobian"]]));
   measures();
   curving();
-  section("Notes", ...((report.notes || []).length ? report.notes.map((note) => element("p", {}, note)) : [element("p", { class: "small" }, "none")]));
+  chapter("Notes", ...((report.notes || []).length ? report.notes.map((note) => element("p", {}, note)) : [element("p", { class: "small" }, "none")]));
   given();
 }
 tell();

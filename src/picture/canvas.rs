@@ -89,7 +89,7 @@ const HALF_LINE: f32 = 0.5 * SAMPLES as f32;
 fn fill(triangle: &Triangle, samples: &mut [Sample], width: usize, top: usize) {
     let [a, b, c] = triangle.corners;
     let twice = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-    if !(twice.abs() > 1e-9) {
+    if twice.abs() <= 1e-9 || twice.is_nan() {
         return;
     }
     // Distance of each corner from the opposite edge, in samples.

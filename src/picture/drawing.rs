@@ -10,7 +10,7 @@ use super::canvas::{SAMPLES, Triangle};
 use super::colour::Colour;
 use crate::element::{Cell, Filling, Order, basis, lattice};
 use crate::mesh::{Mesh, NodeId};
-use crate::scene::{Cut, Section, Shown};
+use crate::scene::{CutPlane, Section, Shown};
 
 /// How far a drawn face may be from the curved one, in pixels.
 const SLACK: f64 = 0.1;
@@ -94,7 +94,7 @@ impl Pieces {
     }
 
     /// The triangles of a piece, with the colours of its points.
-    pub(super) fn triangles(&self, piece: &Piece, faces: &[Shown], colours: &[Colour], camera: &Camera, cut: Option<Cut>) -> Vec<Triangle> {
+    pub(super) fn triangles(&self, piece: &Piece, faces: &[Shown], colours: &[Colour], camera: &Camera, cut: Option<CutPlane>) -> Vec<Triangle> {
         let Some(Table { filling, .. }) = self.known.get(&(faces[piece.face].cell, piece.divisions)) else {
             return Vec::new();
         };
@@ -140,8 +140,8 @@ fn shaded(colour: Colour, normal: DVec3, camera: &Camera) -> Colour {
 }
 
 /// How far a point is beyond the plane that cuts, towards the eye.
-fn beyond(x: DVec3, camera: &Camera, cut: Option<Cut>) -> f32 {
-    let Some(Cut { axis, at }) = cut else { return -1.0 };
+fn beyond(x: DVec3, camera: &Camera, cut: Option<CutPlane>) -> f32 {
+    let Some(CutPlane { axis, at }) = cut else { return -1.0 };
     let towards = if camera.frame[2][axis.index()] < 0.0 { -1.0 } else { 1.0 };
     ((x[axis.index()] - at) * towards) as f32
 }

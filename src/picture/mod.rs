@@ -15,7 +15,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::mesh::{Mesh, NodeId};
-use crate::scene::{Cut, Measures, Patch, Shown, Surface, outer, section};
+use crate::scene::{CutPlane, Measures, Patch, Shown, Surface, outer, section};
 use camera::Camera;
 pub use camera::{VIEWS, View};
 use canvas::{Canvas, SAMPLES, Triangle};
@@ -46,7 +46,7 @@ pub struct Settings {
     /// What colours say.
     pub colouring: Colouring,
     /// The plane that cuts; what is before it is left out.
-    pub cut: Option<Cut>,
+    pub cut: Option<CutPlane>,
     /// How many of the elements with the smallest `J / J_c` are marked.
     pub worst: usize,
     /// Pixels across and down.

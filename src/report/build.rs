@@ -103,7 +103,7 @@ pub fn sweeps(all: &[Sweep]) -> Vec<SweepReport> {
         c_jac: finite(own.costs[1]),
         inverted: own.inverted,
     };
-    let last = all.last().filter(|_| (all.len() - 1) % step != 0);
+    let last = all.last().filter(|_| !(all.len() - 1).is_multiple_of(step));
     all.iter().step_by(step).chain(last).map(row).collect()
 }
 

@@ -8,5 +8,5 @@ mod surface;
 
 pub use framing::outer;
 pub use measures::Measures;
-pub use section::{Axis, Cut, Section, section};
+pub use section::{Axis, CutPlane, Section, section};
 pub use surface::{Patch, Shown, Surface};

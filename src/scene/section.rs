@@ -38,7 +38,7 @@ impl Axis {
 
 /// A plane on which one coordinate has one value.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cut {
+pub struct CutPlane {
     /// Which coordinate.
     pub axis: Axis,
     /// Its value, in the mesh's unit.
@@ -62,7 +62,7 @@ const DIVISIONS: usize = 4;
 /// The triangles in which a plane cuts the volumes of a mesh. Straight elements are cut exactly, curved ones as linear simplices of
 /// [`DIVISIONS`] an edge.
 #[must_use]
-pub fn section(mesh: &Mesh, cut: Cut) -> Vec<Section> {
+pub fn section(mesh: &Mesh, cut: CutPlane) -> Vec<Section> {
     let axis = cut.axis.index();
     let crossed = |own: &Element| {
         let (low, high) = mesh.points_of(own.nodes).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
@@ -90,7 +90,7 @@ fn weighted(cell: Cell, order: Order) -> &'static Weighted {
     })
 }
 
-fn of_element(mesh: &Mesh, own: &Element, cut: Cut) -> Vec<Section> {
+fn of_element(mesh: &Mesh, own: &Element, cut: CutPlane) -> Vec<Section> {
     let Weighted { filling, weights } = weighted(own.cell, mesh.order());
     let at = |weights: &Vec<f64>| mesh.points_of(own.nodes).zip(weights).map(|(x, &weight)| x * weight).sum::<DVec3>();
     let points: Vec<DVec3> = weights.iter().map(at).collect();
@@ -134,7 +134,7 @@ mod tests {
         for name in ["hexpyrtet_p3_msh41a.msh", "cylprism_p2_msh41b.msh"] {
             let mesh = formats::read(format!("fixtures/samples/{name}").as_ref()).unwrap();
             let area = |at: f64| -> f64 {
-                let triangles = section(&mesh, Cut { axis: Axis::Z, at });
+                let triangles = section(&mesh, CutPlane { axis: Axis::Z, at });
                 triangles.iter().map(|t| (t.corners[1] - t.corners[0]).cross(t.corners[2] - t.corners[0]).length() / 2.0).sum()
             };
             let (low, high) = mesh.points().iter().fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(x.z), b.max(x.z)));
