@@ -20,12 +20,7 @@ pub struct Measured {
 /// Measures a mesh with its nodes at `positions`; `linear_corners` as for [`mesh`](super::mesh). Faces that lie in no plane are seen each
 /// along the mean normal of its linear face.
 #[must_use]
-pub fn measured(
-    mesh: &Mesh,
-    positions: &[DVec3],
-    linear_corners: Option<&[DVec3]>,
-    settings: &Settings,
-) -> Measured {
+pub fn measured(mesh: &Mesh, positions: &[DVec3], linear_corners: Option<&[DVec3]>, settings: &Settings) -> Measured {
     let elements = match linear_corners.unwrap_or(positions) {
         corners if mesh.dimension() == 2 && mesh.plane(positions).is_none() => {
             MeshElements::of_surface(mesh, positions, corners)

@@ -15,9 +15,9 @@ mod face;
 mod form;
 mod judge;
 mod judged;
-mod measured;
 #[cfg(test)]
 mod layer_tests;
+mod measured;
 #[cfg(test)]
 mod mesh_tests;
 mod pieces;

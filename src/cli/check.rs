@@ -42,7 +42,11 @@ pub(super) struct Options {
 /// The name of a file of fields.
 fn vtu_name(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
-    if formats::shows_fields(&path, None) { Ok(path) } else { Err(format!("{text:?} does not end in .vtu, and fields are written as VTU")) }
+    if formats::shows_fields(&path, None) {
+        Ok(path)
+    } else {
+        Err(format!("{text:?} does not end in .vtu, and fields are written as VTU"))
+    }
 }
 
 /// A mesh of which nothing can be proven.
@@ -55,10 +59,11 @@ struct Refused {
 
 impl Options {
     fn files(&self) -> Files {
-        let files =
-            Files::of_mesh(&self.mesh).reads("--linear", self.linear.as_ref()).writes("--report", self.report.as_ref())
+        let files = Files::of_mesh(&self.mesh)
+            .reads("--linear", self.linear.as_ref())
+            .writes("--report", self.report.as_ref())
             .writes("--html", self.html.as_ref())
-            .writes_mesh_beside("--fields", self.fields.as_ref());
+            .writes_meshes_beside("--fields", self.fields.as_ref());
         #[cfg(feature = "cad")]
         let files = self.room.files(files);
         files
@@ -96,7 +101,9 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     }
     if let Some(path) = &options.fields {
         let fields = measure_fields(&mesh, &measures);
-        beside.tell(formats::write(path, &mesh, &WriteOptions { fields: &fields, ..WriteOptions::default() }).map(|_| ()));
+        beside.tell(
+            formats::write(path, &mesh, &WriteOptions { fields: &fields, ..WriteOptions::default() }).map(|_| ()),
+        );
     }
     if let Some(path) = &options.html {
         let page = Page::new(&report, &mesh, &measures)?;

@@ -71,9 +71,13 @@ impl Files {
         self.writes("--output", output)
     }
 
-    /// Adds another file with a mesh that is written, where it is given.
-    pub(super) fn writes_mesh_beside(mut self, role: &'static str, path: Option<impl Into<PathBuf>>) -> Files {
-        if let Some(path) = path {
+    /// Adds further files with a mesh that are written.
+    pub(super) fn writes_meshes_beside(
+        mut self,
+        role: &'static str,
+        paths: impl IntoIterator<Item = impl Into<PathBuf>>,
+    ) -> Files {
+        for path in paths {
             let path = path.into();
             self.meshes.push(path.clone());
             self.written.push((role, path));

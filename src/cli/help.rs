@@ -33,7 +33,8 @@ pub(super) fn curve() -> String {
       --linkage fixtures/weeble/weeble.meshlink.xml --order 2 \\
       -o weeble_p2.vtu --report weeble_p2.json --html weeble_p2.html
   sagitta curve fixtures/naca0012_sharp/naca0012_sharp.msh \\
-      --cad fixtures/naca0012_sharp/naca0012_sharp.step --order 3 -o naca_p3.msh";
+      --cad fixtures/naca0012_sharp/naca0012_sharp.step --order 3 \\
+      -o naca_p3.msh -o naca_p3.vtu";
     below(examples, &[DONE, COULD_NOT_RUN, OFF_CAD, NOT_CERTIFIED, STOPPED, SIDE_FILE])
 }
 
@@ -97,7 +98,9 @@ pub(super) fn info() -> String {
 
 pub(super) fn report() -> String {
     let examples = "
-  sagitta report weeble_p2.json weeble_p2.vtu -o weeble_p2.html";
+  sagitta report weeble_p2.json weeble_p2.vtu -o weeble_p2.html
+  sagitta report weeble_check.json weeble_p3.msh \\
+      --linear fixtures/weeble/weeble.msh -o weeble_p3.html";
     below(examples, &[DONE, COULD_NOT_RUN, SIDE_FILE])
 }
 

@@ -6,8 +6,8 @@ use std::sync::OnceLock;
 use clap::Args;
 use glam::DVec3;
 
-use crate::formats::{self, Error, GridLayout, ReadOptions};
 use super::output::Failure;
+use crate::formats::{self, Error, GridLayout, ReadOptions};
 use crate::mesh::{self, Mesh, linear_positions};
 
 /// Options of reading that all commands have.

@@ -8,7 +8,8 @@ use crate::formats;
 /// The name of a page.
 pub(super) fn html_name(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
-    let is_page = path.extension().is_some_and(|ending| ["html", "htm"].iter().any(|own| ending.eq_ignore_ascii_case(own)));
+    let is_page =
+        path.extension().is_some_and(|ending| ["html", "htm"].iter().any(|own| ending.eq_ignore_ascii_case(own)));
     if is_page { Ok(path) } else { Err(format!("{text:?} does not end in .html, as pages for browsers do")) }
 }
 

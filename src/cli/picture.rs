@@ -112,7 +112,10 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     formats::write_bytes(&options.output, &drawn.png)?;
     let mut text: String = drawn.worst.iter().map(|line| format!("{line}\n")).collect();
     if !drawn.left_out.is_empty() {
-        text += &format!("left out, as they stand far round the rest (--patch shows them): {}\n", drawn.left_out.join(", "));
+        text += &format!(
+            "left out, as they stand far round the rest (--patch shows them): {}\n",
+            drawn.left_out.join(", ")
+        );
     }
     let mut beside = Beside::default();
     beside.tell(print(&format!("{text}written: {}", options.output.display())));

@@ -38,7 +38,13 @@ impl Filling {
                     axis.into_iter().for_each(|axis: usize| at[axis] += 1);
                     places.get(&upright(cell, at)).copied()
                 });
-                simplices.extend(places.collect::<Option<Vec<u16>>>());
+                let own = places.collect::<Option<Vec<u16>>>();
+                simplices.extend(own.map(|mut own| {
+                    if is_odd(way) {
+                        own.swap(cell.dimension() - 1, cell.dimension()); // all turn the same way round
+                    }
+                    own
+                }));
             }
         }
         let outside = outside(&simplices);
@@ -84,6 +90,12 @@ fn ways(dimension: usize) -> &'static [&'static [usize]] {
         2 => &[&[0, 1], &[1, 0]],
         _ => &[&[0, 1, 2], &[0, 2, 1], &[1, 0, 2], &[1, 2, 0], &[2, 0, 1], &[2, 1, 0]],
     }
+}
+
+/// Whether an odd number of exchanges leads to this order of axes.
+fn is_odd(way: &[usize]) -> bool {
+    let exchanged = |a: usize| way[a + 1..].iter().filter(|&&later| later < way[a]).count();
+    (0..way.len()).map(exchanged).sum::<usize>() % 2 == 1
 }
 
 /// The lattice point of a cell at a point of the coordinates in which it is partitioned; one that no cell has where there is none.
@@ -133,7 +145,6 @@ mod tests {
                 let volume = |own: &[u16]| {
                     let third = own.get(3).map_or(DVec3::Z / 3.0, |&q| at(q) - at(own[0]));
                     (DMat3::from_cols(at(own[1]) - at(own[0]), at(own[2]) - at(own[0]), third).determinant() / 6.0)
-                        .abs()
                         * if own.len() == 3 { 9.0 } else { 1.0 }
                 };
                 let whole: f64 = filling.simplices().map(|(own, _)| volume(own)).sum();

@@ -60,7 +60,8 @@ function verdict() {
   if (off > 0) return ["partly", `${proven}, but ${off} boundary faces that belong to the CAD are not on it.`];
   const patches = (report.patches || []).filter((own) => own.cad_distance_max !== null);
   const farthest = patches.reduce((most, own) => (most && most.cad_distance_max >= own.cad_distance_max ? most : own), null);
-  const distance = farthest && `; its walls are within ${figure(farthest.cad_distance_max)} of the CAD (${farthest.names.join(", ") || farthest.entity})`;
+  const unit = report.input && report.input.cad_scale === 1 ? ` ${report.input.cad_unit}` : "";
+  const distance = farthest && `; its walls are within ${figure(farthest.cad_distance_max)}${unit} of the CAD (farthest: ${[...farthest.names, farthest.entity].join(", ")})`;
   return ["good", proven + (distance || "") + "."];
 }
 
@@ -93,6 +94,12 @@ function measures() {
     element("div", { class: "charts" }, ...all.map(histogram)));
 }
 
+function plain(pointer) {
+  const cell = value(pointer);
+  cell.className = "text";
+  return cell;
+}
+
 function given() {
   const rows = [["/run/date", "date (UTC)"], ["/run/command", "command"], ["/version", "sagitta"], ["/input/mesh", "mesh"], ["/mesh", "mesh"],
     ["/input/cad", "CAD"], ["/input/cad_unit", "unit of the CAD"], ["/input/cad_scale", "CAD multiplied by"], ["/input/linkage", "linkage"],
@@ -100,7 +107,7 @@ function given() {
   const shown = rows.filter(([pointer]) => at(pointer) !== undefined && at(pointer) !== null);
   const command = (pointer) => element("td", { class: "text", "data-pointer": pointer, "data-value": JSON.stringify(at(pointer)) }, element("code", {}, at(pointer).join(" ")));
   chapter("What was given", element("table", {}, ...shown.map(([pointer, title]) =>
-    element("tr", {}, element("th", {}, title), pointer === "/run/command" ? command(pointer) : value(pointer)))));
+    element("tr", {}, element("th", {}, title), pointer === "/run/command" ? command(pointer) : plain(pointer)))));
 }
 
 function curving() {

@@ -112,12 +112,14 @@ pub(super) fn geometry(
 ) -> Geometry {
     let mut left_out = Vec::new();
     let bounds = cad::Aabb::of_points(surface.faces.iter().flat_map(|face| mesh.points_of(&face.nodes)));
-    let mut numbering = Numbering { mesh, origin: bounds.center(), places: FxHashMap::default(), coordinates: Vec::new() };
+    let mut numbering =
+        Numbering { mesh, origin: bounds.center(), places: FxHashMap::default(), coordinates: Vec::new() };
     let faces = faces(mesh, surface, distances, &mut left_out);
     let curved = divisions(mesh.order(), faces.len());
     let faces = numbering.blocks(&faces, mesh.order(), measures, curved);
     let elements = elements(mesh, places, &mut left_out);
-    let elements = numbering.blocks(&elements, mesh.order(), measures, if mesh.order() == Order::LINEAR { 1 } else { 4 });
+    let elements =
+        numbering.blocks(&elements, mesh.order(), measures, if mesh.order() == Order::LINEAR { 1 } else { 4 });
     let sides: Vec<crate::scene::Patch> = surface.patches.clone();
     let outer = outer(&sides);
     let patches = surface.patches.iter().zip(outer);
@@ -127,7 +129,11 @@ pub(super) fn geometry(
         origin: numbering.origin.to_array(),
         nodes: encoded(numbering.coordinates.iter().flat_map(|x| x.to_le_bytes())),
         patches: patches
-            .map(|(own, outer)| Patch { name: own.label(), entity: own.entity.to_string(), outer: outer && mesh.is_volume() })
+            .map(|(own, outer)| Patch {
+                name: own.label(),
+                entity: own.entity.to_string(),
+                outer: outer && mesh.is_volume(),
+            })
             .collect(),
         faces,
         elements,
@@ -245,8 +251,7 @@ impl Numbering<'_> {
     fn block(&mut self, cell: Cell, items: &[Item], order: Order, measures: &Measures, divisions: usize) -> Block {
         let own: Vec<&Item> = items.iter().filter(|item| item.cell == cell).collect();
         let cells = self.mesh.cells();
-        let connectivity: Vec<u32> =
-            own.iter().flat_map(|item| item.nodes).map(|&node| self.number(node)).collect();
+        let connectivity: Vec<u32> = own.iter().flat_map(|item| item.nodes).map(|&node| self.number(node)).collect();
         let number = |item: &&Item| item.element.map_or(f64::NAN, |id| cells.get(id).tag as f64);
         let of_element = |item: &Item, values: &[f64]| {
             item.element.and_then(|id| values.get(id.index()).copied()).unwrap_or(f64::NAN) as f32

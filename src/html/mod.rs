@@ -56,7 +56,8 @@ impl<'a> Page<'a> {
         let of = |face: &crate::scene::Shown| distance(FaceKey::new(&face.nodes[..face.cell.corner_count()]));
         let distances: Vec<f64> = surface.faces.iter().map(|face| of(face).unwrap_or(f64::NAN)).collect();
         let geometry = geometry(self.mesh, &surface, self.measures, &distances, &self.places());
-        let script = format!("{}\n{}", include_str!("figures.js"), include_str!("view.js").replacen("\"use strict\";", "", 1));
+        let script =
+            format!("{}\n{}", include_str!("figures.js"), include_str!("view.js").replacen("\"use strict\";", "", 1));
         let parts: [(&str, Cow<str>); 5] = [
             ("@@STYLE@@", include_str!("page.css").into()),
             ("@@REPORT@@", embedded(&serde_json::to_string(&self.report)?).into()),

@@ -198,7 +198,7 @@ function whole() {
   const middle = low.map((x, k) => (x + high[k]) / 2);
   const size = Math.hypot(...low.map((x, k) => high[k] - x));
   if (geometry.flat) camera.up.set(0, 1, 0); else camera.up.set(0, 0, 1);
-  look(middle, 1.75 * size, geometry.flat ? [0, 0, 1] : [-0.62, -0.9, 0.62]);
+  look(middle, 1.55 * size, geometry.flat ? [0, 0, 1] : [-0.62, -0.9, 0.62]);
 }
 
 function draw() {
@@ -334,7 +334,7 @@ function show(rank) {
       }
     });
     for (const [other, n] of lines.slice(0, 120)) {
-      const glass = new THREE.MeshLambertMaterial({ color: 0x4477aa, side: THREE.DoubleSide, transparent: true, opacity: 0.12, depthWrite: false });
+      const glass = new THREE.MeshLambertMaterial({ color: 0x4477aa, side: THREE.DoubleSide, transparent: true, opacity: 0.06, depthWrite: false });
       const near = surface(other, [n], glass, true)[0];
       const outline = new THREE.LineSegments(outlined(other, n), new THREE.LineBasicMaterial({ color: 0x223a5e }));
       marking.add(near, outline);

@@ -54,7 +54,12 @@ pub(super) struct Camera {
 impl Camera {
     /// A window with its left upper corner and size given, on all of some points.
     #[must_use]
-    pub(super) fn on(frame: [DVec3; 3], points: impl Iterator<Item = DVec3>, corner: [f64; 2], size: [f64; 2]) -> Camera {
+    pub(super) fn on(
+        frame: [DVec3; 3],
+        points: impl Iterator<Item = DVec3>,
+        corner: [f64; 2],
+        size: [f64; 2],
+    ) -> Camera {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for x in points {
             for (k, direction) in frame.iter().enumerate() {

@@ -98,7 +98,9 @@ fn fill(triangle: &Triangle, samples: &mut [Sample], width: usize, top: usize) {
     let rows = samples.len() / width;
     let [low, high] = [f32::min, f32::max].map(|of: fn(f32, f32) -> f32| of(of(a[1], b[1]), c[1]) - top as f32 - 0.5);
     let [left, right] = [f32::min, f32::max].map(|of: fn(f32, f32) -> f32| of(of(a[0], b[0]), c[0]) - 0.5);
-    let range = |from: f32, to: f32, end: usize| from.ceil().max(0.0) as usize..(to.floor() + 1.0).clamp(0.0, end as f32) as usize;
+    let range = |from: f32, to: f32, end: usize| {
+        from.ceil().max(0.0) as usize..(to.floor() + 1.0).clamp(0.0, end as f32) as usize
+    };
     for row in range(low, high, rows) {
         let y = (top + row) as f32 + 0.5;
         for column in range(left, right, width) {

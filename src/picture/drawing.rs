@@ -70,7 +70,8 @@ impl Pieces {
         let table = self.known.get(&(face.cell, divisions))?;
         let at = |weights: &Vec<f64>| nodes.iter().zip(weights).map(|(&x, &weight)| x * weight).sum();
         let points: Vec<DVec3> = table.weights.iter().map(at).collect();
-        let along = |slopes: &[[f64; 3]], axis: usize| nodes.iter().zip(slopes).map(|(&x, own)| x * own[axis]).sum::<DVec3>();
+        let along =
+            |slopes: &[[f64; 3]], axis: usize| nodes.iter().zip(slopes).map(|(&x, own)| x * own[axis]).sum::<DVec3>();
         let normal = |slopes: &Vec<[f64; 3]>| along(slopes, 0).cross(along(slopes, 1)).normalize_or(camera.frame[2]);
         Some(Piece { face: place, divisions, points, normals: table.slopes.iter().map(normal).collect() })
     }
@@ -94,7 +95,14 @@ impl Pieces {
     }
 
     /// The triangles of a piece, with the colours of its points.
-    pub(super) fn triangles(&self, piece: &Piece, faces: &[Shown], colours: &[Colour], camera: &Camera, cut: Option<CutPlane>) -> Vec<Triangle> {
+    pub(super) fn triangles(
+        &self,
+        piece: &Piece,
+        faces: &[Shown],
+        colours: &[Colour],
+        camera: &Camera,
+        cut: Option<CutPlane>,
+    ) -> Vec<Triangle> {
         let Some(Table { filling, .. }) = self.known.get(&(faces[piece.face].cell, piece.divisions)) else {
             return Vec::new();
         };
@@ -147,7 +155,11 @@ fn beyond(x: DVec3, camera: &Camera, cut: Option<CutPlane>) -> f32 {
 }
 
 /// The triangles of a section, of the colours of its elements.
-pub(super) fn of_section(sections: &[Section], colour: impl Fn(usize) -> Colour + Sync, camera: &Camera) -> Vec<Triangle> {
+pub(super) fn of_section(
+    sections: &[Section],
+    colour: impl Fn(usize) -> Colour + Sync,
+    camera: &Camera,
+) -> Vec<Triangle> {
     let of_element = |own: &[Section]| {
         let seen: Vec<[[f32; 3]; 3]> = own.iter().map(|triangle| triangle.corners.map(|x| camera.see(x))).collect();
         let dark = darkness(seen.as_flattened());

@@ -68,9 +68,12 @@ impl Paper {
             let t = t.clamp(0.0, 1.0);
             (x - from[0] - t * along[0]).hypot(y - from[1] - t * along[1])
         };
-        self.shape([from[0].min(to[0]), from[1].min(to[1]), from[0].max(to[0]), from[1].max(to[1])], margin, colour, |x, y| {
-            width / 2.0 + 0.5 - away(x, y)
-        });
+        self.shape(
+            [from[0].min(to[0]), from[1].min(to[1]), from[0].max(to[0]), from[1].max(to[1])],
+            margin,
+            colour,
+            |x, y| width / 2.0 + 0.5 - away(x, y),
+        );
     }
 
     /// A ring.
@@ -81,7 +84,13 @@ impl Paper {
     }
 
     /// Covers pixels round a box by a function of their middles, 0 to 1.
-    fn shape(&mut self, [left, top, right, bottom]: [f32; 4], margin: f32, colour: Colour, part: impl Fn(f32, f32) -> f32) {
+    fn shape(
+        &mut self,
+        [left, top, right, bottom]: [f32; 4],
+        margin: f32,
+        colour: Colour,
+        part: impl Fn(f32, f32) -> f32,
+    ) {
         let range = |from: f32, to: f32, end: usize| {
             let clamp = |x: f32| x.clamp(-1.0, end as f32) as i64;
             clamp(from - margin)..=clamp(to + margin)

@@ -105,7 +105,8 @@ pub fn draw(mesh: &Mesh, title: &str, settings: &Settings, distances: Option<Dis
     let measures = if measured { Measures::proven(mesh, None) } else { Measures::default() };
     let layout = Layout::new(settings);
     let camera = camera(mesh, &surface, &shown, settings, &layout);
-    let visible: Vec<bool> = surface.patches.iter().zip(&shown).map(|(patch, &shown)| shown || !is_side(mesh, patch)).collect();
+    let visible: Vec<bool> =
+        surface.patches.iter().zip(&shown).map(|(patch, &shown)| shown || !is_side(mesh, patch)).collect();
     let pieces = Pieces::new(mesh.order());
     let drawn = pieces.of(mesh, &surface.faces, &visible, &camera);
     let values = values(&surface.faces, &drawn, settings.colouring, &measures, distances);
@@ -209,7 +210,8 @@ fn camera(mesh: &Mesh, surface: &Surface, shown: &[bool], settings: &Settings, l
         let of = |entity| surface.patches.iter().position(|patch| patch.entity == entity).is_some_and(|p| shown[p]);
         mesh.sides().iter().filter(|side| of(side.entity)).flat_map(|side| side.nodes.to_vec()).collect()
     };
-    let all: Vec<NodeId> = if sides.is_empty() { surface.faces.iter().flat_map(|face| face.nodes.clone()).collect() } else { sides };
+    let all: Vec<NodeId> =
+        if sides.is_empty() { surface.faces.iter().flat_map(|face| face.nodes.clone()).collect() } else { sides };
     let mut camera = Camera::on(view.frame(), mesh.points_of(&all), corner, size);
     if !whole && (settings.cut.is_some() || plane.is_some()) {
         camera.scale *= 0.7; // what lies round the walls
@@ -247,7 +249,8 @@ fn paint(colouring: Colouring, values: impl Iterator<Item = f64>, surface: &Surf
         Colouring::Scaled => Paint::measure("scaled Jacobian", values),
         Colouring::Distance => Paint::length("distance to CAD", values),
         Colouring::Patch => {
-            let mut occurring: Vec<usize> = surface.faces.iter().map(|face| face.patch).filter(|&p| visible[p]).collect();
+            let mut occurring: Vec<usize> =
+                surface.faces.iter().map(|face| face.patch).filter(|&p| visible[p]).collect();
             occurring.sort_unstable();
             occurring.dedup();
             Paint::Patches(occurring.into_iter().map(|p| (p, surface.patches[p].label())).collect())
@@ -277,7 +280,8 @@ fn mark_worst(
         }
         let middle = mesh.points_of(own.corners()).sum::<DVec3>() / own.corners().len() as f64;
         let at = on_paper(middle);
-        let inside = at[0] >= 0.0 && at[0] < layout.right as f32 && at[1] >= layout.top as f32 && at[1] < layout.bottom as f32;
+        let inside =
+            at[0] >= 0.0 && at[0] < layout.right as f32 && at[1] >= layout.top as f32 && at[1] < layout.bottom as f32;
         if inside {
             paper.ring(at, 8.0, 1.8, MARK);
             paper.halo(&rank.to_string(), [at[0] + 10.0, at[1] - 7.0]);

@@ -65,7 +65,12 @@ impl Paint {
                 paper.label("0 or less", [(left + 26) as f32, (top + height + 19) as f32]);
             }
             Paint::Length { name, range: [low, high] } => {
-                self.bar(paper, name, [left, top, height], |t| if *low > 0.0 { low * (high / low).powf(t) } else { 0.0 });
+                self.bar(
+                    paper,
+                    name,
+                    [left, top, height],
+                    |t| if *low > 0.0 { low * (high / low).powf(t) } else { 0.0 },
+                );
             }
             Paint::Patches(patches) => {
                 for ((place, name), row) in patches.iter().take(LISTED).zip(0..) {

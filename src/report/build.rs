@@ -9,8 +9,8 @@ use rustc_hash::FxHashMap;
 use super::certificate::CertificateReport;
 use super::curve::{
     Angles, CellReport, Costs, GridLinesReport, Input, LowerOrderReport, Nodes, OffCadReport, OpenFaceReport,
-    PatchReport, PlaneReport, Projections, Report, SCHEMA, SmoothingReport, StepReport, SweepReport, WallFailure, WallReport,
-    WallVerdict,
+    PatchReport, PlaneReport, Projections, Report, SCHEMA, SmoothingReport, StepReport, SweepReport, WallFailure,
+    WallReport, WallVerdict,
 };
 use super::finite;
 use super::measures::{lowest, spread};
@@ -97,7 +97,6 @@ pub fn sweeps(all: &[Sweep]) -> Vec<SweepReport> {
     let row = |own: &Sweep| SweepReport {
         order: own.order,
         sweep: own.sweep,
-        seconds: own.seconds,
         active_nodes: own.active_nodes,
         c_wcn: finite(own.costs[0]),
         c_jac: finite(own.costs[1]),

@@ -264,8 +264,6 @@ pub struct SweepReport {
     pub order: usize,
     /// Sweeps at this order before.
     pub sweep: usize,
-    /// Seconds since the smoothing began at the first order.
-    pub seconds: f64,
     /// Nodes that are moved; 0 at the end.
     pub active_nodes: usize,
     /// Smallest `C_WCN` of the last survey.

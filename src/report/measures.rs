@@ -20,7 +20,8 @@ const PERCENTS: [f64; 9] = [0.0, 0.1, 1.0, 5.0, 25.0, 50.0, 75.0, 95.0, 100.0];
 /// One measure of the elements of one kind.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct MeasureReport {
-    /// `J/J_c` and `scaled Jacobian` (proven lower bounds of every element), `C_WCN`, `C_JAC` (a survey).
+    /// `J/J_c` and `scaled Jacobian` (proven lower bounds of every element, those of the scaled Jacobian less sharp than the certificate's),
+    /// `C_WCN`, `C_JAC` (a survey).
     pub measure: &'static str,
     /// `tet`, `pyramid`, `prism` or `hex`; in the plane `triangle` or `quad`.
     pub cell: &'static str,
@@ -51,7 +52,7 @@ pub struct Histogram {
     pub from: f64,
     /// Upper end of the last bar.
     pub to: f64,
-    /// Elements in each bar; those at an inner end are in the upper bar.
+    /// Elements in each bar; those at an inner end are in the upper bar, those beyond the ends in the first and last.
     pub counts: Vec<usize>,
 }
 

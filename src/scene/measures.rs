@@ -12,7 +12,7 @@ use crate::smooth::{ElementCost, Problem};
 /// Divisions of an edge at which costs are surveyed, in multiples of the order: as `sagitta curve` does.
 const SURVEY_FACTOR: usize = 4;
 
-/// The measures of every element, in the order of the mesh's cells; all are at most 1, the larger the better.
+/// The measures of every element, in the order of the mesh's cells; the larger the better, all but `J / J_c` at most 1.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measures {
     /// Proven lower bound of the minimum of `J / J_c`; minus infinity where `J_c` is not positive.

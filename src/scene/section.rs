@@ -65,9 +65,9 @@ const DIVISIONS: usize = 4;
 pub fn section(mesh: &Mesh, cut: CutPlane) -> Vec<Section> {
     let axis = cut.axis.index();
     let crossed = |own: &Element| {
-        let (low, high) = mesh.points_of(own.nodes).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-            (low.min(x[axis]), high.max(x[axis]))
-        });
+        let (low, high) = mesh
+            .points_of(own.nodes)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x[axis]), high.max(x[axis])));
         low <= cut.at && cut.at <= high
     };
     let cells = mesh.cells();
@@ -135,7 +135,10 @@ mod tests {
             let mesh = formats::read(format!("fixtures/samples/{name}").as_ref()).unwrap();
             let area = |at: f64| -> f64 {
                 let triangles = section(&mesh, CutPlane { axis: Axis::Z, at });
-                triangles.iter().map(|t| (t.corners[1] - t.corners[0]).cross(t.corners[2] - t.corners[0]).length() / 2.0).sum()
+                triangles
+                    .iter()
+                    .map(|t| (t.corners[1] - t.corners[0]).cross(t.corners[2] - t.corners[0]).length() / 2.0)
+                    .sum()
             };
             let (low, high) = mesh.points().iter().fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(x.z), b.max(x.z)));
             let steps = 400;
@@ -148,9 +151,8 @@ mod tests {
 
     fn volume(mesh: &Mesh, own: &Element) -> f64 {
         let Weighted { filling, weights } = weighted(own.cell, mesh.order());
-        let at = |q: u16| -> DVec3 {
-            mesh.points_of(own.nodes).zip(&weights[usize::from(q)]).map(|(x, &w)| x * w).sum()
-        };
+        let at =
+            |q: u16| -> DVec3 { mesh.points_of(own.nodes).zip(&weights[usize::from(q)]).map(|(x, &w)| x * w).sum() };
         let of = |s: &[u16]| (at(s[1]) - at(s[0])).cross(at(s[2]) - at(s[0])).dot(at(s[3]) - at(s[0])).abs() / 6.0;
         filling.simplices().map(|(simplex, _)| of(simplex)).sum()
     }

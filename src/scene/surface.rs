@@ -107,7 +107,8 @@ impl Surface {
 /// Finds the cell behind each boundary element.
 fn find_cells(mesh: &Mesh, faces: &mut [Shown]) {
     let corners = |face: &Shown| FaceKey::new(&face.nodes[..face.cell.corner_count()]);
-    let places: FxHashMap<FaceKey, usize> = faces.iter().enumerate().map(|(place, face)| (corners(face), place)).collect();
+    let places: FxHashMap<FaceKey, usize> =
+        faces.iter().enumerate().map(|(place, face)| (corners(face), place)).collect();
     let of_cell = |own: Element| own.sides().filter_map(|side| Some((*places.get(&side)?, own.id))).collect::<Vec<_>>();
     let found: Vec<(usize, ElementId)> = mesh.cells().par_iter().flat_map_iter(of_cell).collect();
     found.into_iter().rev().for_each(|(place, id)| faces[place].element = Some(id));
@@ -116,7 +117,8 @@ fn find_cells(mesh: &Mesh, faces: &mut [Shown]) {
 /// The sides that one cell alone has.
 fn skin(mesh: &Mesh) -> Vec<Shown> {
     let cells = mesh.cells();
-    let of_cell = |own: Element| own.sides().enumerate().map(move |(side, key)| (key, own.id, side)).collect::<Vec<_>>();
+    let of_cell =
+        |own: Element| own.sides().enumerate().map(move |(side, key)| (key, own.id, side)).collect::<Vec<_>>();
     let mut sides: Vec<(FaceKey, ElementId, usize)> = cells.par_iter().flat_map_iter(of_cell).collect();
     sides.par_sort_unstable();
     let alone = sides.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() == 1).map(|same| same[0]);

@@ -19,6 +19,7 @@ mod determinism;
 mod engines;
 mod environment;
 mod fallback;
+mod fields;
 mod fit;
 mod foreign_linkage;
 mod formats;

@@ -46,7 +46,8 @@ fn the_page_of_a_curved_mesh_tells_what_the_report_tells() {
     let at = |name: &str| dir.path().join(name);
     let [mesh, report, page] = ["out.msh", "out.json", "out.html"].map(at);
     let (linear, cad) = (fixture("weeble", "msh"), fixture("weeble", "step"));
-    let arguments = args!["curve", linear, "--cad", cad, "--order", "2", "-o", mesh, "--report", report, "--html", page];
+    let arguments =
+        args!["curve", linear, "--cad", cad, "--order", "2", "-o", mesh, "--report", report, "--html", page];
     sagitta(arguments).expect(0);
     let document = json(&report);
     assert_eq!(document["lowest"].as_array().unwrap().len(), 50);

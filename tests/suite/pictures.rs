@@ -74,10 +74,14 @@ fn plane_meshes_sections_and_worst_elements_are_drawn() {
     let mesh = root().join("fixtures/samples/hexpyrtet_p3_msh41a.msh");
     let (whole, _) = drawn(&mesh, dir.path(), "whole.png", &["--view", "x"]);
     let (cut, _) = drawn(&mesh, dir.path(), "cut.png", &["--view", "x", "--cut", "x:0.5", "--color", "scaled"]);
-    assert!(covered(&whole) > 0.2 && (covered(&cut) / covered(&whole) - 1.0).abs() < 0.05, "a cube, cut or not, is a square");
+    assert!(
+        covered(&whole) > 0.2 && (covered(&cut) / covered(&whole) - 1.0).abs() < 0.05,
+        "a cube, cut or not, is a square"
+    );
     let cad = fixture("weeble", "step");
     let cad = cad.to_str().unwrap();
-    let (path, _) = drawn(&fixture("weeble", "msh"), dir.path(), "distance.png", &["--color", "distance", "--cad", cad]);
+    let (path, _) =
+        drawn(&fixture("weeble", "msh"), dir.path(), "distance.png", &["--color", "distance", "--cad", cad]);
     assert!(covered(&path) > 0.1);
 }
 
@@ -86,7 +90,8 @@ fn plane_meshes_sections_and_worst_elements_are_drawn() {
 fn a_picture_is_the_same_bytes_again() {
     let dir = tempfile::tempdir().unwrap();
     let mesh = fixture("weeble", "msh");
-    let one = ["one.png", "two.png"].map(|name| std::fs::read(drawn(&mesh, dir.path(), name, &["--cut", "y:0"]).0).unwrap());
+    let one =
+        ["one.png", "two.png"].map(|name| std::fs::read(drawn(&mesh, dir.path(), name, &["--cut", "y:0"]).0).unwrap());
     assert!(one[0] == one[1]);
 }
 

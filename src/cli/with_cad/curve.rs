@@ -39,8 +39,8 @@ pub(in crate::cli) struct Options {
     /// Polynomial order of the curved mesh: 2, 3 or 4
     #[arg(long, value_name = "P", value_parser = order)]
     order: Order,
-    #[arg(short, long, value_name = "OUT", required_unless_present = "dry_run", help = form::output("The curved mesh"))]
-    output: Option<PathBuf>,
+    #[arg(short, long, value_name = "OUT", required_unless_present = "dry_run", help = form::output("The curved mesh; given again it is written again, in another format, and --for is for the first"))]
+    output: Vec<PathBuf>,
     /// The mesh is one of triangles and quadrilaterals on CAD faces, without a volume: its nodes are put on the CAD and fitted to it, and
     /// its faces proven free of folds, on the CAD's side; nothing is smoothed
     #[arg(long, conflicts_with_all = ["checkpoint", "resume", "curve_layers"])]
@@ -157,13 +157,19 @@ impl Options {
         }
     }
 
+    /// The meshes that are written.
+    fn outputs(&self) -> impl Iterator<Item = &PathBuf> {
+        self.output.iter().filter(|_| !self.dry_run)
+    }
+
     fn files(&self) -> Files {
         let written = |path: &Option<PathBuf>| path.clone().filter(|_| !self.dry_run);
         Files::of_mesh(&self.mesh)
             .reads("--cad", Some(&self.cad))
             .reads("--linkage", self.linkage.as_ref())
             .reads("--resume", self.resume.as_ref())
-            .writes_mesh(written(&self.output), self.form.solver())
+            .writes_mesh(self.outputs().next(), self.form.solver())
+            .writes_meshes_beside("--output", self.outputs().skip(1))
             .writes("--report", self.report.as_ref())
             .writes("--html", self.html.as_ref())
             .writes("--open-faces", self.open_faces.as_ref())
@@ -173,7 +179,8 @@ impl Options {
 
     /// Whether a file is asked for that tells of the measures of the elements.
     fn tells_measures(&self) -> bool {
-        let shown = self.output.as_ref().is_some_and(|path| formats::shows_fields(path, self.form.solver()));
+        let first = self.outputs().take(1).any(|path| formats::shows_fields(path, self.form.solver()));
+        let shown = first || self.outputs().skip(1).any(|path| formats::shows_fields(path, None));
         shown || self.report.is_some() || self.html.is_some()
     }
 
@@ -185,7 +192,7 @@ impl Options {
             cad_scale: self.reading.scale(),
             reading: self.reading.options(),
             mesh_reading: input::reading(),
-            solver: self.output.clone().zip(self.form.solver()),
+            solver: self.output.first().cloned().zip(self.form.solver()),
             settings: self.settings(),
         }
     }
@@ -219,7 +226,7 @@ impl Options {
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     options.files().check()?;
     let job = options.job();
-    let Some(output) = options.output.as_ref().filter(|_| !options.dry_run) else {
+    let Some(output) = options.outputs().next() else {
         return dry_run(&job, options);
     };
     let limit = options.time_limit.map(Duration::from_secs_f64);
@@ -245,6 +252,13 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let mut beside = Beside::default();
     beside.tell(kept);
     beside.tell(traced);
+    let mut further = Vec::new();
+    for path in options.outputs().skip(1).filter(|_| missing.is_none()) {
+        match options.form.write_beside(path, &curved.mesh, || fields(&curved, &measures)) {
+            Ok(notes) => further.push((path, notes)),
+            Err(error) => beside.tell(Err(error)),
+        }
+    }
     if let Some(path) = &options.open_faces {
         beside.tell(write_left_open(path, left_open(&curved)));
     }
@@ -265,6 +279,10 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
         None => {
             let notes: String = notes.iter().map(|note| format!("note: {note}\n")).collect();
             beside.tell(print(&format!("{notes}written: {written}")));
+            for (path, notes) in further {
+                let notes: String = notes.iter().map(|note| format!("note: {note}\n")).collect();
+                beside.tell(print(&format!("{notes}written: {}", path.display())));
+            }
         }
     }
     Ok(beside.exit_code(exit_code(options, &curved)))
@@ -319,7 +337,8 @@ fn page(path: &Path, report: &Report, curved: &Curved, measures: &Measures) -> R
 
 /// Writes the mesh; returns notes.
 fn write(options: &Options, output: &Path, curved: &Curved, measures: &Measures) -> Result<Vec<String>, Failure> {
-    let fields = if formats::shows_fields(output, options.form.solver()) { fields(curved, measures) } else { Vec::new() };
+    let fields =
+        if formats::shows_fields(output, options.form.solver()) { fields(curved, measures) } else { Vec::new() };
     Ok(options.form.write(output, &curved.mesh, &fields)?)
 }
 
