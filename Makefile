@@ -100,7 +100,7 @@ picture: build venv ## the README's pictures of the weeble: fixtures/pictures/we
 	$(SAGITTA) curve fixtures/weeble/weeble.msh --cad fixtures/weeble/weeble.step --order 3 -o $(TARGET)/weeble_p3.vtu --quiet \
 	    --report $(TARGET)/weeble_p3.json --html $(TARGET)/weeble_p3.html
 	"$(SAGITTA_PYTHON)" tests/pictures/weeble.py $(TARGET)/weeble_p3.vtu fixtures/pictures/weeble_p3.png
-	$(SAGITTA) picture $(TARGET)/weeble_p3.vtu --cut y:0 --view -y --color scaled --size 900x700 -o fixtures/pictures/weeble_cut.png
+	$(SAGITTA) picture $(TARGET)/weeble_p3.vtu --cut y:0 --view -y --color scaled --size 720x560 -o fixtures/pictures/weeble_cut.png
 	"$(SAGITTA_PYTHON)" tests/pages/browse.py $(TARGET)/weeble_p3.html $(TARGET)/weeble_p3.json fixtures/pictures/weeble_page.png
 
 vendor-three: ## make src/html/vendor/three.min.js again, by npm, from the versions in package.json there

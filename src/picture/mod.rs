@@ -305,6 +305,7 @@ fn encoded(paper: &Paper) -> Result<Vec<u8>, NoPicture> {
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::High);
     let failed = |error: png::EncodingError| NoPicture::Encoding(error.to_string());
     let mut writer = encoder.write_header().map_err(failed)?;
     writer.write_image_data(&paper.bytes).map_err(failed)?;

@@ -10,8 +10,11 @@ const STEP: f64 = 2.0;
 /// Largest box of the inner patches together, as a fraction of the whole mesh's.
 const INNER: f64 = 0.5;
 
+/// The part of all sides that lie on the inner patches, at least: they are no detail, as the tip of a wing alone would be.
+const SHARE: f64 = 0.1;
+
 /// For each patch, whether it stands round the others: the diagonals of the patches' boxes fall by [`STEP`] between outer and inner ones, and
-/// the inner ones together are less than [`INNER`] of the mesh. Where nothing is so small, as in a duct, none is.
+/// the inner ones together are less than [`INNER`] of the mesh, with [`SHARE`] of its sides or more. Where nothing is so small, as in a duct, none is.
 #[must_use]
 pub fn outer(patches: &[Patch]) -> Vec<bool> {
     let all = |some: &[&Patch]| some.iter().fold(Aabb::EMPTY, |all, own| all.union(own.bounds)).diagonal();
@@ -19,9 +22,10 @@ pub fn outer(patches: &[Patch]) -> Vec<bool> {
     falling.sort_by(|a, b| b.bounds.diagonal().total_cmp(&a.bounds.diagonal()));
     let whole = all(&falling);
     let step = |k: usize| falling[k - 1].bounds.diagonal() / falling[k].bounds.diagonal().max(f64::MIN_POSITIVE);
-    let small = |k: &usize| all(&falling[*k..]) <= INNER * whole;
-    let fall = (1..falling.len()).filter(small).max_by(|&a, &b| step(a).total_cmp(&step(b)));
-    let Some(fall) = fall.filter(|&k| step(k) >= STEP) else { return vec![false; patches.len()] };
+    let sides = |some: &[&Patch]| some.iter().map(|own| own.count).sum::<usize>() as f64;
+    let many = SHARE * sides(&falling);
+    let is_fall = |&k: &usize| step(k) >= STEP && all(&falling[k..]) <= INNER * whole && sides(&falling[k..]) >= many;
+    let Some(fall) = (1..falling.len()).find(is_fall) else { return vec![false; patches.len()] };
     let least = falling[fall].bounds.diagonal();
     patches.iter().map(|own| own.bounds.diagonal() > least).collect()
 }
@@ -42,6 +46,14 @@ mod tests {
         let wing = [patch([0.0; 3], [1.0, 2.0, 0.1]), patch([0.9, 0.0, 0.0], [1.0, 2.0, 0.0])];
         let far = [patch([-50.0, 0.0, -50.0], [50.0, 80.0, 50.0]), patch([-50.0, 0.0, -50.0], [50.0, 0.0, 50.0])];
         assert_eq!(outer(&[wing.as_slice(), &far].concat()), [false, false, true, true]);
+    }
+
+    #[test]
+    fn a_detail_is_not_all_that_is_seen() {
+        let tip = patch([0.0, 2.0, 0.0], [0.1, 2.0, 0.1]);
+        let walls = [patch([0.0; 3], [1.0, 2.0, 0.1]), patch([-0.1; 3], [1.1, 2.1, 0.2])];
+        let walls = walls.map(|own| Patch { count: 100, ..own });
+        assert_eq!(outer(&[walls.as_slice(), &[tip]].concat()), [false; 3]);
     }
 
     #[test]

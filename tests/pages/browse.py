@@ -143,7 +143,7 @@ def browse(browser, page, report, screenshot):
     found["cut"] = browser.evaluate(PIXELS)
     found["cut_triangles"] = browser.evaluate("cutting.children.length ? cutting.children[0].geometry.attributes.position.count / 3 : 0")
     if screenshot:
-        image = browser.ask("Page.captureScreenshot", format="png")
+        image = browser.ask("Page.captureScreenshot", format="png", clip={"x": 0, "y": 0, "width": 1400, "height": 910, "scale": 0.7})
         pathlib.Path(screenshot).write_bytes(base64.b64decode(image["data"]))
     found["errors"] = browser.errors()
     return found

@@ -13,6 +13,4 @@ grid = pyvista.read(sys.argv[1])
 own = np.asarray(grid.cell_data["dimension"]) == np.max(grid.cell_data["dimension"])
 cells = {name: np.asarray(values)[own] for name, values in grid.cell_data.items()}
 found = {name: [float(values.min()), float(values.max())] for name, values in (cells | dict(grid.point_data)).items()}
-cut = grid.slice(normal="z")
-found["cut"] = sorted(set(np.unique(cut.cell_data["dimension"]).tolist()))
 print(json.dumps(found))
