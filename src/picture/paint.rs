@@ -73,10 +73,11 @@ impl Paint {
                 );
             }
             Paint::Patches(patches) => {
+                let room = (paper.width as i64 - left - 24).max(0) as usize / 8; // letters
                 for ((place, name), row) in patches.iter().take(LISTED).zip(0..) {
                     let y = top + 20 * row;
                     paper.fill([left, y, 14, 14], of_patch(*place));
-                    let short: String = name.chars().take(19).collect();
+                    let short: String = name.chars().take(room).collect();
                     paper.label(&short, [(left + 20) as f32, (y + 12) as f32]);
                 }
                 if patches.len() > LISTED {
