@@ -132,6 +132,9 @@ pub fn draw(mesh: &Mesh, title: &str, settings: &Settings, distances: Option<Dis
     let mut left_out: Vec<String> =
         (0..shown.len()).filter(|&p| !visible[p]).map(|p| surface.patches[p].name.clone()).collect();
     left_out.dedup();
+    if !settings.patches.is_empty() {
+        left_out.clear(); // it was asked for
+    }
     Ok(Picture { png: encoded(&paper)?, left_out, worst })
 }
 

@@ -63,7 +63,7 @@ fn what_stands_far_round_the_walls_is_left_out_and_said() {
     assert!(said.contains("left out") && said.contains("farfield"), "{said}");
     assert!(covered(&path) > 0.1);
     let (path, said) = drawn(&mesh, dir.path(), "far.png", &["--color", "patch", "--patch", "farfield"]);
-    assert!(!said.contains("left out, as they stand far round the rest (--patch shows them): farfield"), "{said}");
+    assert!(!said.contains("left out"), "{said}");
     assert!(covered(&path) > 0.3);
 }
 
