@@ -36,6 +36,9 @@ pub(super) struct Options {
     /// Show these patches: physical names or surface numbers [default: all but those that stand far round the others]
     #[arg(long, value_name = "PATCH,...", value_delimiter = ',')]
     patch: Vec<String>,
+    /// The linear mesh that it was made from: the reference of J/J_c [default: each element's own corners]
+    #[arg(long, value_name = "P1MESH")]
+    linear: Option<PathBuf>,
     /// Pixels across and down
     #[arg(long, value_name = "WxH", default_value = "1200x900", value_parser = size)]
     size: [usize; 2],
@@ -82,7 +85,8 @@ impl Options {
     }
 
     fn files(&self) -> Files {
-        let files = Files::of_mesh(&self.mesh).writes("--output", Some(&self.output));
+        let files =
+            Files::of_mesh(&self.mesh).reads("--linear", self.linear.as_ref()).writes("--output", Some(&self.output));
         #[cfg(feature = "cad")]
         let files = self.cad.files(files);
         files
@@ -100,14 +104,17 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     if options.cut.is_some() && !mesh.is_volume() {
         return Err(format!("{name}: it has no volume that --cut could cut; leave --cut away").into());
     }
+    let linear = input::linear_corners(&options.mesh, &mesh, options.linear.as_deref())?;
     let cells = mesh.cells().len();
     let stem = options.mesh.file_name().unwrap_or_default().to_string_lossy();
     let title = format!("{stem}: {}, {cells} elements", mesh.order());
     let settings = options.settings();
     #[cfg(feature = "cad")]
-    let drawn = options.cad.with_distances(|distances| picture::draw(&mesh, &title, &settings, distances))?;
+    let drawn = options
+        .cad
+        .with_distances(|distances| picture::draw(&mesh, linear.as_deref(), &title, &settings, distances))?;
     #[cfg(not(feature = "cad"))]
-    let drawn = picture::draw(&mesh, &title, &settings, None);
+    let drawn = picture::draw(&mesh, linear.as_deref(), &title, &settings, None);
     let drawn = drawn.map_err(|cause| format!("{name}: {cause}"))?;
     formats::write_bytes(&options.output, &drawn.png)?;
     let mut text: String = drawn.worst.iter().map(|line| format!("{line}\n")).collect();

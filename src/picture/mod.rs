@@ -91,18 +91,24 @@ pub enum NoPicture {
 /// Distances of points to the CAD.
 pub type Distances<'a> = &'a (dyn Fn(&[DVec3]) -> Vec<f64> + Sync);
 
-/// Draws a mesh; `title` stands above it. Distances are asked for where [`Colouring::Distance`] is; without them they are not known.
+/// Draws a mesh; `title` stands above it. `linear_corners` as for [`Measures::of`]. Distances are asked for where [`Colouring::Distance`] is; without them they are not known.
 ///
 /// # Errors
 /// [`NoPicture`].
-pub fn draw(mesh: &Mesh, title: &str, settings: &Settings, distances: Option<Distances>) -> Result<Picture, NoPicture> {
+pub fn draw(
+    mesh: &Mesh,
+    linear_corners: Option<&[DVec3]>,
+    title: &str,
+    settings: &Settings,
+    distances: Option<Distances>,
+) -> Result<Picture, NoPicture> {
     let surface = Surface::of(mesh);
     if surface.faces.is_empty() {
         return Err(NoPicture::NoFaces);
     }
     let shown = shown(&surface, &settings.patches)?;
     let measured = settings.worst > 0 || matches!(settings.colouring, Colouring::Quality | Colouring::Scaled);
-    let measures = if measured { Measures::proven(mesh, None) } else { Measures::default() };
+    let measures = if measured { Measures::proven(mesh, linear_corners) } else { Measures::default() };
     let layout = Layout::new(settings);
     let camera = camera(mesh, &surface, &shown, settings, &layout);
     let visible: Vec<bool> =

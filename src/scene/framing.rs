@@ -13,8 +13,9 @@ const INNER: f64 = 0.5;
 /// The part of all sides that lie on the inner patches, at least: they are no detail, as the tip of a wing alone would be.
 const SHARE: f64 = 0.1;
 
-/// For each patch, whether it stands round the others: the diagonals of the patches' boxes fall by [`STEP`] between outer and inner ones, and
-/// the inner ones together are less than [`INNER`] of the mesh, with [`SHARE`] of its sides or more. Where nothing is so small, as in a duct, none is.
+/// For each patch, whether it stands far round the others: the diagonals of the patches' boxes fall by a factor of 2 between outer and inner
+/// ones, and the inner ones together are at most half of the mesh across and have a tenth of its sides or more. Where nothing is so small, as
+/// in a duct, none does.
 #[must_use]
 pub fn outer(patches: &[Patch]) -> Vec<bool> {
     let all = |some: &[&Patch]| some.iter().fold(Aabb::EMPTY, |all, own| all.union(own.bounds)).diagonal();

@@ -59,8 +59,8 @@ pub struct Section {
 /// Divisions of the edges of a curved element that is cut.
 const DIVISIONS: usize = 4;
 
-/// The triangles in which a plane cuts the volumes of a mesh. Straight elements are cut exactly, curved ones as linear simplices of
-/// [`DIVISIONS`] an edge.
+/// The triangles in which a plane cuts the volumes of a mesh, in the order of the elements. Straight elements are cut exactly, curved ones as linear simplices of
+/// a quarter of their edges.
 #[must_use]
 pub fn section(mesh: &Mesh, cut: CutPlane) -> Vec<Section> {
     let axis = cut.axis.index();

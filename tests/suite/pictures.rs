@@ -72,6 +72,9 @@ fn plane_meshes_sections_and_worst_elements_are_drawn() {
     let dir = tempfile::tempdir().unwrap();
     let (path, said) = drawn(&fixture("naca0012_sharp", "msh"), dir.path(), "plane.png", &["--worst", "2"]);
     assert!(covered(&path) > 0.5 && said.lines().filter(|line| line.contains("J/J_c")).count() == 2, "{said}");
+    let plane = fixture("naca0012_sharp", "msh");
+    let (_, against) = drawn(&plane, dir.path(), "plane.png", &["--worst", "2", "--linear", plane.to_str().unwrap()]);
+    assert_eq!(against, said, "a linear mesh is its own");
     let mesh = root().join("fixtures/samples/hexpyrtet_p3_msh41a.msh");
     let (whole, _) = drawn(&mesh, dir.path(), "whole.png", &["--view", "x"]);
     let (cut, _) = drawn(&mesh, dir.path(), "cut.png", &["--view", "x", "--cut", "x:0.5", "--color", "scaled"]);
