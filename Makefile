@@ -21,7 +21,7 @@ PACKAGE := $(abspath $(TARGET))/python
 
 # The steps of a target run in their order, also under -j.
 .NOTPARALLEL:
-.PHONY: help setup setup-build build demo venv test lint unit python python-consumers wheel deb examples fuzz fuzz-coverage parsers bench oracle table engines picture bench-cases consumers solvers convergence figures reliability same-bits gauntlet-3d gauntlet-2d schema doc
+.PHONY: help setup setup-build build demo venv test lint unit python python-consumers wheel deb examples fuzz fuzz-coverage parsers bench oracle table engines picture vendor-three bench-cases consumers solvers convergence figures reliability same-bits gauntlet-3d gauntlet-2d schema doc
 
 help: ## this list
 	@echo "sagitta curves linear viscous CFD meshes onto their CAD. Targets:"
@@ -122,9 +122,17 @@ table: build venv ## a table of the fixtures, curved and judged by other code; m
 engines: build venv ## the engines side by side on the weeble and the wing: fixtures/pictures/engines.png and a table; 4 minutes
 	"$(SAGITTA_PYTHON)" tests/pictures/engines.py $(SAGITTA) fixtures/pictures/engines.png
 
-picture: build venv ## the README's picture of the weeble: fixtures/pictures/weeble_p3.png
-	$(SAGITTA) curve fixtures/weeble/weeble.msh --cad fixtures/weeble/weeble.step --order 3 -o $(TARGET)/weeble_p3.vtu --quiet
+picture: build venv ## the README's pictures of the weeble: fixtures/pictures/weeble_*.png; the one of the page needs chromium
+	$(SAGITTA) curve fixtures/weeble/weeble.msh --cad fixtures/weeble/weeble.step --order 3 -o $(TARGET)/weeble_p3.vtu --quiet \
+	    --report $(TARGET)/weeble_p3.json --html $(TARGET)/weeble_p3.html
 	"$(SAGITTA_PYTHON)" tests/pictures/weeble.py $(TARGET)/weeble_p3.vtu fixtures/pictures/weeble_p3.png
+	$(SAGITTA) picture $(TARGET)/weeble_p3.vtu --cut y:0 --view -y --color scaled --size 720x560 -o fixtures/pictures/weeble_cut.png
+	"$(SAGITTA_PYTHON)" tests/pages/browse.py $(TARGET)/weeble_p3.html $(TARGET)/weeble_p3.json fixtures/pictures/weeble_page.png
+
+vendor-three: ## make src/html/vendor/three.min.js again, by npm, from the versions in package.json there
+	cd src/html/vendor && npm install --no-save --no-audit --no-fund && \
+	    npx esbuild entry.js --bundle --minify --format=iife --global-name=THREE --legal-comments=inline --outfile=three.min.js && \
+	    rm -rf node_modules && sha256sum --check SHA256SUMS
 
 consumers: setup build ## curved meshes given to Gmsh, meshio, MFEM, PyFR, PyHOPE, VTK and cgnscheck, and what they find; minutes
 	@WANTED=tests/consumers/requirements.txt VENV=.venv-consumers PYTHON="$(PYTHON)" .ci/venv

@@ -88,9 +88,12 @@ pub mod cli;
 pub mod curve;
 pub mod element;
 pub mod formats;
+pub mod html;
 pub mod mesh;
+pub mod picture;
 pub mod quality;
 pub mod report;
+pub mod scene;
 pub mod smooth;
 #[cfg(feature = "cad")]
 pub mod validate;

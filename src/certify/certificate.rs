@@ -112,14 +112,14 @@ pub fn certify(elements: &impl Elements, settings: &Settings) -> Certificate {
 
 /// A judge with its buffer.
 #[derive(Default)]
-struct Bench {
+pub(super) struct Bench {
     judge: Judge,
     buffer: Buffer,
 }
 
 impl Bench {
     /// Reads an element and has something done with its shape.
-    fn with<R>(
+    pub(super) fn with<R>(
         &mut self,
         elements: &impl Elements,
         element: ElementId,

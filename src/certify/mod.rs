@@ -17,6 +17,7 @@ mod judge;
 mod judged;
 #[cfg(test)]
 mod layer_tests;
+mod measured;
 #[cfg(test)]
 mod mesh_tests;
 mod pieces;
@@ -47,6 +48,7 @@ pub use elements::{Buffer, Elements, MeshElements};
 pub use face::{FaceFinding, WallFace, Walls, mean_normal, walls};
 pub use judge::{Judge, Shape};
 pub use judged::Judged;
+pub use measured::{Measured, measured};
 pub use verdict::{Bounds, Finding, Method, Verdict};
 
 /// When the certificate stops to subdivide.

@@ -3,14 +3,19 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use glam::DVec3;
 
 use super::{form, input};
-use crate::certify::{self, NotCertifiable, Settings};
+use crate::certify::{self, Certificate, NotCertifiable, Settings};
 use crate::cli::exit::{DONE, NOT_CERTIFIED};
 use crate::cli::files::Files;
 use crate::cli::output::{Beside, Failure, print, write_json};
-use crate::mesh::{self, linear_positions};
-use crate::report::CheckReport;
+use crate::cli::page::{command, html_name, write_page};
+use crate::formats::{self, WriteOptions};
+use crate::html::Page;
+use crate::mesh::Mesh;
+use crate::report::{CheckReport, Run, measure_fields};
+use crate::scene::Measures;
 
 /// Options of `sagitta check`.
 #[derive(Args)]
@@ -26,15 +31,22 @@ pub(super) struct Options {
     /// Also write what is proven as JSON
     #[arg(long, value_name = "R.json")]
     report: Option<PathBuf>,
+    /// Also write a page for any browser: all figures, and the mesh in space with its worst elements
+    #[arg(long, value_name = "FILE.html", value_parser = html_name)]
+    html: Option<PathBuf>,
+    /// Also write the mesh with the measures of its elements as fields, for ParaView
+    #[arg(long, value_name = "FILE.vtu", value_parser = vtu_name)]
+    fields: Option<PathBuf>,
 }
 
-/// A linear mesh that is not the one that the curved mesh was made from.
-#[derive(Debug, thiserror::Error)]
-#[error("{linear}: not the linear mesh of {curved}: {why}")]
-struct NotItsLinear {
-    linear: String,
-    curved: String,
-    why: mesh::NotItsLinear,
+/// The name of a file of fields.
+fn vtu_name(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    if formats::shows_fields(&path, None) {
+        Ok(path)
+    } else {
+        Err(format!("{text:?} does not end in .vtu, and fields are written as VTU"))
+    }
 }
 
 /// A mesh of which nothing can be proven.
@@ -47,11 +59,25 @@ struct Refused {
 
 impl Options {
     fn files(&self) -> Files {
-        let files =
-            Files::of_mesh(&self.mesh).reads("--linear", self.linear.as_ref()).writes("--report", self.report.as_ref());
+        let files = Files::of_mesh(&self.mesh)
+            .reads("--linear", self.linear.as_ref())
+            .writes("--report", self.report.as_ref())
+            .writes("--html", self.html.as_ref())
+            .writes_meshes_beside("--fields", self.fields.as_ref());
         #[cfg(feature = "cad")]
         let files = self.room.files(files);
         files
+    }
+}
+
+impl Options {
+    /// The measures of the elements, where a file is asked for that tells of them.
+    fn measures(&self, mesh: &Mesh, linear_corners: Option<&[DVec3]>, certificate: &Certificate) -> Measures {
+        if self.report.is_none() && self.html.is_none() && self.fields.is_none() {
+            return Measures::default();
+        }
+        // The certificate has sharpened the smallest.
+        Measures { j_over_jc: certificate.minima.clone(), ..Measures::of(mesh, linear_corners) }
     }
 }
 
@@ -59,22 +85,12 @@ impl Options {
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     options.files().check()?;
     let mesh = input::mesh(&options.mesh)?;
-    let unperturbed = match &options.linear {
-        None => None,
-        Some(path) => {
-            let linear = input::mesh(path)?;
-            let matched = linear_positions(&mesh, &linear).map_err(|why| NotItsLinear {
-                linear: path.display().to_string(),
-                curved: options.mesh.display().to_string(),
-                why,
-            })?;
-            Some(matched)
-        }
-    };
+    let unperturbed = input::linear_corners(&options.mesh, &mesh, options.linear.as_deref())?;
     let certificate = certify::check(&mesh, mesh.points(), unperturbed.as_deref(), &Settings::default())
         .map_err(|cause| Refused { mesh: options.mesh.display().to_string(), cause })?;
+    let measures = options.measures(&mesh, unperturbed.as_deref(), &certificate);
     #[cfg_attr(not(feature = "cad"), expect(unused_mut))]
-    let mut report = CheckReport::new(&options.mesh, &mesh, &certificate);
+    let mut report = CheckReport::new(&options.mesh, &mesh, &certificate, &measures, Run::ending_now(command()));
     #[cfg(feature = "cad")]
     {
         report.association = options.room.look(&options.mesh, &mesh)?;
@@ -82,6 +98,16 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let mut beside = Beside::default();
     if let Some(path) = &options.report {
         beside.tell(write_json(path, &report));
+    }
+    if let Some(path) = &options.fields {
+        let fields = measure_fields(&mesh, &measures);
+        beside.tell(
+            formats::write(path, &mesh, &WriteOptions { fields: &fields, ..WriteOptions::default() }).map(|_| ()),
+        );
+    }
+    if let Some(path) = &options.html {
+        let page = Page::new(&report, &mesh, &measures)?;
+        beside.tell(write_page(path, &page.text(|_| None)?));
     }
     beside.tell(print(&report.to_string()));
     Ok(beside.exit_code(if certificate.holds() { DONE } else { NOT_CERTIFIED }))

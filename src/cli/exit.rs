@@ -26,7 +26,7 @@ pub(super) fn meaning(code: u8) -> &'static str {
         OFF_CAD => "certified, but some boundary faces are off the CAD (curve)",
         NOT_CERTIFIED => "not all is proven (project: closest points), or --require-all is not met",
         STOPPED => "stopped early: limit or interrupt; certified, faces as with 3 (curve)",
-        SIDE_FILE => "as 0, but a report, trace, checkpoint or stdout was not written (told)",
+        SIDE_FILE => "as 0, but a file beside the result, or stdout, was not written (told)",
         _ => "interrupted while reading, or twice: ended at once, nothing is written",
     }
 }

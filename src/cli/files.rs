@@ -26,6 +26,8 @@ pub(super) struct Files {
     written: Vec<(&'static str, PathBuf)>,
     /// The mesh that is written.
     output: Option<PathBuf>,
+    /// Further meshes that are written, for no solver.
+    meshes: Vec<PathBuf>,
     /// The solver that it is for.
     solver: Option<&'static Solver>,
     /// Bytes that it has at least.
@@ -69,6 +71,20 @@ impl Files {
         self.writes("--output", output)
     }
 
+    /// Adds further files with a mesh that are written.
+    pub(super) fn writes_meshes_beside(
+        mut self,
+        role: &'static str,
+        paths: impl IntoIterator<Item = impl Into<PathBuf>>,
+    ) -> Files {
+        for path in paths {
+            let path = path.into();
+            self.meshes.push(path.clone());
+            self.written.push((role, path));
+        }
+        self
+    }
+
     /// Whether all is well.
     ///
     /// # Errors
@@ -77,6 +93,9 @@ impl Files {
         self.apart()?;
         if let Some(output) = &self.output {
             formats::check_output(output, self.expected, self.solver)?;
+        }
+        for path in &self.meshes {
+            formats::check_output(path, self.expected, None)?;
         }
         for (_, path) in &self.written {
             formats::check_file(path, SMALL)?;

@@ -59,6 +59,18 @@ impl Form {
         }
     }
 
+    /// Writes a mesh as chosen, but for no solver, with fields where the format shows them; returns notes as [`Form::write`].
+    #[cfg(feature = "cad")]
+    pub(super) fn write_beside(
+        &self,
+        path: &Path,
+        mesh: &Mesh,
+        fields: impl FnOnce() -> Vec<Field>,
+    ) -> Result<Vec<String>, formats::Error> {
+        let fields = if formats::shows_fields(path, None) { fields() } else { Vec::new() };
+        formats::write(path, mesh, &self.options(&fields))
+    }
+
     fn options<'a>(&self, fields: &'a [Field]) -> WriteOptions<'a> {
         WriteOptions {
             msh_version: self.msh_version,

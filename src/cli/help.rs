@@ -31,9 +31,10 @@ pub(super) fn curve() -> String {
       --order 3 -o weeble_p3.msh
   sagitta curve fixtures/weeble/weeble.msh --cad fixtures/weeble/weeble.step \\
       --linkage fixtures/weeble/weeble.meshlink.xml --order 2 \\
-      -o weeble_p2.vtu --report weeble_p2.json
+      -o weeble_p2.vtu --report weeble_p2.json --html weeble_p2.html
   sagitta curve fixtures/naca0012_sharp/naca0012_sharp.msh \\
-      --cad fixtures/naca0012_sharp/naca0012_sharp.step --order 3 -o naca_p3.msh";
+      --cad fixtures/naca0012_sharp/naca0012_sharp.step --order 3 \\
+      -o naca_p3.msh -o naca_p3.vtu";
     below(examples, &[DONE, COULD_NOT_RUN, OFF_CAD, NOT_CERTIFIED, STOPPED, SIDE_FILE])
 }
 
@@ -41,7 +42,8 @@ pub(super) fn check() -> String {
     let examples = "
   sagitta check fixtures/samples/hexpyrtet_p3_msh41a.msh
   sagitta check weeble_p3.msh --linear fixtures/weeble/weeble.msh \\
-      --report weeble_check.json
+      --report weeble_check.json --html weeble_check.html
+  sagitta check weeble_p3.msh --fields weeble_fields.vtu
   sagitta check fixtures/weeble/weeble.msh --cad fixtures/weeble/weeble.step \\
       --order 3";
     below(examples, &[DONE, COULD_NOT_RUN, NOT_CERTIFIED, SIDE_FILE])
@@ -103,6 +105,22 @@ pub(super) fn completions() -> String {
 
 pub(super) fn man() -> String {
     below("\n  mkdir -p man && sagitta man man && man -l man/sagitta-curve.1", &[DONE, COULD_NOT_RUN])
+}
+
+pub(super) fn report() -> String {
+    let examples = "
+  sagitta report weeble_p2.json weeble_p2.vtu -o weeble_p2.html
+  sagitta report weeble_check.json weeble_p3.msh \\
+      --linear fixtures/weeble/weeble.msh -o weeble_p3.html";
+    below(examples, &[DONE, COULD_NOT_RUN, SIDE_FILE])
+}
+
+pub(super) fn picture() -> String {
+    let examples = "
+  sagitta picture fixtures/samples/hexpyrtet_p3_msh41a.msh -o boundary.png
+  sagitta picture fixtures/weeble/weeble.msh --color patch -o patches.png
+  sagitta picture weeble_p3.msh --cut y:0 --view -y --worst 5 -o worst.png";
+    below(examples, &[DONE, COULD_NOT_RUN, SIDE_FILE])
 }
 
 #[cfg(feature = "cad")]

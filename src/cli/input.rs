@@ -4,9 +4,11 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use clap::Args;
+use glam::DVec3;
 
+use super::output::Failure;
 use crate::formats::{self, Error, GridLayout, ReadOptions};
-use crate::mesh::Mesh;
+use crate::mesh::{self, Mesh, linear_positions};
 
 /// Options of reading that all commands have.
 #[derive(Args, Clone, Copy, Debug, Default)]
@@ -62,6 +64,26 @@ pub(super) fn reading() -> ReadOptions {
 /// Reads a mesh.
 pub(super) fn mesh(path: &Path) -> Result<Mesh, Error> {
     formats::read_with(path, &reading())
+}
+
+/// A linear mesh that is not the one that the curved mesh was made from.
+#[derive(Debug, thiserror::Error)]
+#[error("{linear}: not the linear mesh of {curved}: {why}")]
+struct NotItsLinear {
+    linear: String,
+    curved: String,
+    why: mesh::NotItsLinear,
+}
+
+/// Where the corners of a mesh, which was read from `path`, stand in the linear mesh that it was made from, where that is given.
+pub(super) fn linear_corners(path: &Path, own: &Mesh, linear: Option<&Path>) -> Result<Option<Vec<DVec3>>, Failure> {
+    let Some(linear) = linear else { return Ok(None) };
+    let matched = linear_positions(own, &mesh(linear)?).map_err(|why| NotItsLinear {
+        linear: linear.display().to_string(),
+        curved: path.display().to_string(),
+        why,
+    })?;
+    Ok(Some(matched))
 }
 
 #[cfg(test)]

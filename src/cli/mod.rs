@@ -19,6 +19,9 @@ mod info;
 mod input;
 mod man;
 mod output;
+mod page;
+mod picture;
+mod report;
 mod signals;
 mod threads;
 #[cfg(feature = "cad")]
@@ -68,6 +71,12 @@ enum Command {
     /// Write the manual pages of all commands
     #[command(after_help = help::man())]
     Man(man::Options),
+    /// Draw a mesh: its curved boundary, a section, its worst elements; no display is needed
+    #[command(after_help = help::picture())]
+    Picture(picture::Options),
+    /// Make a page for a browser of a JSON report and its mesh
+    #[command(after_help = help::report())]
+    Report(report::Options),
 }
 
 /// Reads a file in a child process.
@@ -127,5 +136,7 @@ fn run_command(command: &Command) -> Result<u8, output::Failure> {
         Command::Info(options) => info::run(options),
         Command::Completions(options) => completions::run(options, Program::command()),
         Command::Man(options) => man::run(options, Program::command()),
+        Command::Picture(options) => picture::run(options),
+        Command::Report(options) => report::run(options),
     }
 }

@@ -24,6 +24,8 @@
 //! | boundary: classifications, displacements, association | 8 |
 //! | CAD, code, allocator | 23 |
 //!
+//! Where a report, a page or a VTU file is asked for, the four measures of the elements take 24 bytes a node more.
+//!
 //! At P3 and P4 the mesh of the order below is kept as well, as far as it takes to go on from it: positions and nodes of the elements.
 //!
 //! Smoothing takes more for *active* nodes only (none in that case): a gradient and a Hessian block (96 bytes) for each node of each
@@ -63,4 +65,4 @@ pub use job::{Job, Preview};
 pub use observer::{Observer, Step};
 pub use orders::LowerOrder;
 pub use settings::Settings;
-pub use trace::Trace;
+pub use trace::{Sweep, Trace};

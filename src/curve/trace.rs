@@ -12,15 +12,23 @@ use crate::smooth::{Checkpoint, Progress, Smoothed};
 /// The columns that are written.
 const COLUMNS: [&str; 8] = ["seconds", "order", "sweep", "stage", "active_nodes", "c_wcn_min", "c_jac_min", "inverted"];
 
-/// A sweep, or the end: see [`COLUMNS`].
-struct Row {
-    seconds: f64,
-    order: usize,
-    sweep: usize,
-    stage: usize,
-    active_nodes: usize,
-    costs: [f64; 2],
-    inverted: usize,
+/// A sweep, or the end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sweep {
+    /// Seconds since the smoothing began at the first order.
+    pub seconds: f64,
+    /// The order that is smoothed.
+    pub order: usize,
+    /// Sweeps at this order before.
+    pub sweep: usize,
+    /// The stage that it belongs to.
+    pub stage: usize,
+    /// Nodes that it moves; 0 at the end.
+    pub active_nodes: usize,
+    /// Smallest `C_WCN` and `C_JAC` of the last survey before it, at the end those of the mesh.
+    pub costs: [f64; 2],
+    /// Elements with a cost of 0 or less then.
+    pub inverted: usize,
 }
 
 /// Notes every sweep, and passes everything on to another observer.
@@ -29,7 +37,7 @@ pub struct Trace<'a> {
     start: Option<Instant>,
     end: Option<f64>,
     order: Option<Order>,
-    rows: Vec<Row>,
+    rows: Vec<Sweep>,
 }
 
 impl<'a> Trace<'a> {
@@ -38,14 +46,11 @@ impl<'a> Trace<'a> {
         Trace { observer, start: None, end: None, order: None, rows: Vec::new() }
     }
 
-    /// Writes the rows. Seconds count from the beginning of the smoothing at the first order; costs are those of the last survey before the
-    /// sweep, in the last row those of the mesh.
-    ///
-    /// # Errors
-    /// [`formats::Error`] of the file.
-    pub fn write(&self, path: &Path, smoothed: &Smoothed) -> Result<(), formats::Error> {
+    /// All sweeps, and behind them the end.
+    #[must_use]
+    pub fn sweeps(&self, smoothed: &Smoothed) -> Vec<Sweep> {
         let end = smoothed.end;
-        let last = Row {
+        let last = Sweep {
             seconds: self.end.unwrap_or(0.0),
             order: self.order.map_or(0, Order::get),
             sweep: smoothed.sweeps,
@@ -54,10 +59,19 @@ impl<'a> Trace<'a> {
             costs: [end.c_wcn, end.c_jac],
             inverted: end.inverted,
         };
+        self.rows.iter().copied().chain([last]).collect()
+    }
+
+    /// Writes the rows. Seconds count from the beginning of the smoothing at the first order; costs are those of the last survey before the
+    /// sweep, in the last row those of the mesh.
+    ///
+    /// # Errors
+    /// [`formats::Error`] of the file.
+    pub fn write(&self, path: &Path, smoothed: &Smoothed) -> Result<(), formats::Error> {
         formats::write_file(path, |out| {
             let mut out = csv::Writer::from_writer(out);
             out.write_record(COLUMNS)?;
-            for row in self.rows.iter().chain([&last]) {
+            for row in self.sweeps(smoothed) {
                 let [wcn, jac] = row.costs.map(|cost| cost.to_string());
                 let counts = [row.order, row.sweep, row.stage, row.active_nodes, row.inverted];
                 let [order, sweep, stage, active, inverted] = counts.map(|count| count.to_string());
@@ -92,7 +106,7 @@ impl Observer for Trace<'_> {
     }
 
     fn progress(&mut self, progress: &Progress) -> bool {
-        self.rows.push(Row {
+        self.rows.push(Sweep {
             seconds: self.seconds(),
             order: self.order.map_or(0, Order::get),
             sweep: progress.sweep,

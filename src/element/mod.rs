@@ -8,6 +8,7 @@ pub mod bernstein;
 mod cell;
 pub mod derivative;
 mod extension;
+mod filling;
 mod lattice;
 mod net;
 mod orientation;
@@ -18,6 +19,7 @@ mod volume;
 
 pub use cell::{Cell, Face, Order, OrderOutOfRange};
 pub use extension::interior_extension;
+pub use filling::Filling;
 pub(crate) use lattice::{between, embed, shifted};
 pub use lattice::{edge_nodes, face_lattice, lattice, side_nodes};
 pub use net::Net;

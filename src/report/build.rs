@@ -4,30 +4,44 @@ use std::collections::BTreeSet;
 
 use glam::DVec3;
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
 use super::certificate::CertificateReport;
 use super::curve::{
     Angles, CellReport, Costs, GridLinesReport, Input, LowerOrderReport, Nodes, OffCadReport, OpenFaceReport,
-    PatchReport, PlaneReport, Projections, Report, SCHEMA, SmoothingReport, StepReport, WallFailure, WallReport,
-    WallVerdict,
+    PatchReport, PlaneReport, Projections, Report, SCHEMA, SmoothingReport, StepReport, SweepReport, WallFailure,
+    WallReport, WallVerdict,
 };
 use super::finite;
+use super::measures::{lowest, spread};
+use super::run::Run;
 use crate::associate::{Classification, OpenFace};
-use crate::certify::{FaceFinding, Verdict};
+use crate::certify::{self, FaceFinding, Measured, Verdict};
 use crate::curve::layers::straight_elements;
 use crate::curve::recover::{Departure, OffCadFace};
-use crate::curve::{Curved, Job, LowerOrder};
+use crate::curve::{Curved, Job, LowerOrder, Sweep};
 use crate::element::{Cell, Order, Samples, basis};
-use crate::mesh::EntityKey;
+use crate::mesh::{EntityKey, FaceKey};
 use crate::quality::{GridLineAngles, GridLines};
+use crate::scene::Measures;
 use crate::smooth::Summary;
 
 /// Divisions of a face, in multiples of p, at which its distance from the CAD is sampled.
 const DISTANCE_DENSITY: usize = 3;
 
-/// The report of a curved mesh.
+/// The measures of the elements of a curved mesh, against the linear one.
 #[must_use]
-pub fn report(job: &Job, curved: &Curved) -> Report {
+pub fn measures(curved: &Curved) -> Measures {
+    let (mesh, settings) = (&curved.mesh, certify::Settings::default());
+    let proven = certify::measured(mesh, mesh.points(), Some(&curved.straight), &settings);
+    // The certificate has sharpened the smallest.
+    let proven = Measured { relative: curved.certificate.minima.clone(), ..proven };
+    Measures::new(proven, &curved.smoothed.costs)
+}
+
+/// The report of a curved mesh, with the measures of its elements where they are taken.
+#[must_use]
+pub fn report(job: &Job, curved: &Curved, measures: &Measures, run: Run) -> Report {
     let mesh = &curved.mesh;
     let has_cad = |classification: &Classification| matches!(classification, Classification::Surface(_));
     let (grid_line_angles, (cells, patches)) =
@@ -35,6 +49,7 @@ pub fn report(job: &Job, curved: &Curved) -> Report {
     Report {
         schema: SCHEMA,
         version: env!("CARGO_PKG_VERSION"),
+        run,
         input: Input {
             mesh: job.mesh.display().to_string(),
             cad: job.cad.display().to_string(),
@@ -54,6 +69,8 @@ pub fn report(job: &Job, curved: &Curved) -> Report {
         walls: walls(curved),
         grid_line_angles,
         certificate: CertificateReport::new(mesh, &curved.certificate),
+        measures: spread(mesh, measures),
+        lowest: lowest(mesh, measures),
         smoothing: SmoothingReport {
             lower_orders: curved.lower_orders.iter().map(LowerOrderReport::from).collect(),
             sweeps: curved.smoothed.sweeps,
@@ -61,12 +78,32 @@ pub fn report(job: &Job, curved: &Curved) -> Report {
             start: curved.smoothed.start.into(),
             end: curved.smoothed.end.into(),
         },
+        sweeps: Vec::new(),
         projections: Projections { count: curved.wall.queries, unproven: curved.wall.unproven },
         notes: curved.mesh.notes().iter().chain(&curved.association.notes).cloned().collect(),
         seconds: curved.seconds.iter().map(|&(step, seconds)| StepReport { step: step.name(), seconds }).collect(),
         peak_memory: peak_memory(),
         threads: rayon::current_num_threads(),
     }
+}
+
+/// Sweeps that a report lists at most.
+const SWEEPS: usize = 1000;
+
+/// Sweeps as reports have them: all, or one of every so many, and the last.
+#[must_use]
+pub fn sweeps(all: &[Sweep]) -> Vec<SweepReport> {
+    let step = all.len().div_ceil(SWEEPS).max(1);
+    let row = |own: &Sweep| SweepReport {
+        order: own.order,
+        sweep: own.sweep,
+        active_nodes: own.active_nodes,
+        c_wcn: finite(own.costs[0]),
+        c_jac: finite(own.costs[1]),
+        inverted: own.inverted,
+    };
+    let last = all.last().filter(|_| !(all.len() - 1).is_multiple_of(step));
+    all.iter().step_by(step).chain(last).map(row).collect()
 }
 
 fn plane(curved: &Curved) -> Option<PlaneReport> {
@@ -180,6 +217,15 @@ fn node_distance(curved: &Curved, face: usize) -> Option<f64> {
     let group = &curved.association.surfaces[surface].group;
     let nodes = curved.boundary.nodes(face, &curved.mesh);
     nodes.iter().map(|n| group.distance(curved.mesh.points()[n.index()])).reduce(f64::max)
+}
+
+/// The largest distance of each boundary face from the CAD that it is associated with, by its corners; of faces that are associated with none
+/// nothing stands there.
+#[must_use]
+pub fn face_distances(curved: &Curved) -> FxHashMap<FaceKey, f64> {
+    let faces = 0..curved.boundary.faces.len();
+    let of = |face: usize| Some((FaceKey::new(&curved.boundary.corners[face]), distance(curved, face)?));
+    faces.into_par_iter().filter_map(of).collect()
 }
 
 fn off_cad(curved: &Curved, off: &OffCadFace) -> OffCadReport {

@@ -7,11 +7,14 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::certificate::CertificateReport;
+use super::measures::{LowElement, MeasureReport, lowest, spread};
+use super::run::Run;
 #[cfg(feature = "cad")]
 use crate::associate::Summary;
 use crate::certify::{Certificate, Tally};
 use crate::element::Cell;
 use crate::mesh::{Mesh, Plane, Skin};
+use crate::scene::Measures;
 
 /// Name and version of the JSON document.
 pub const SCHEMA: &str = "sagitta-check-2";
@@ -24,6 +27,8 @@ pub struct CheckReport {
     pub schema: &'static str,
     /// Version of the program.
     pub version: &'static str,
+    /// When it was made, and by which command.
+    pub run: Run,
     /// The file.
     pub mesh: String,
     /// Polynomial order.
@@ -34,6 +39,10 @@ pub struct CheckReport {
     pub cells: Vec<CellCounts>,
     /// Minima and the elements that have them.
     pub certificate: CertificateReport,
+    /// The measures of the elements, by kind of cell; empty where they were not asked for.
+    pub measures: Vec<MeasureReport>,
+    /// The 50 elements with the smallest J / J_c, worst first; empty where measures were not asked for.
+    pub lowest: Vec<LowElement>,
     /// What lies on which CAD, and where that leaves little room; only where CAD is given.
     #[cfg(feature = "cad")]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -54,9 +63,9 @@ pub struct CellCounts {
 }
 
 impl CheckReport {
-    /// The report of a mesh file's certificate.
+    /// The report of a mesh file's certificate, and of the measures of its elements where they are taken.
     #[must_use]
-    pub fn new(path: &Path, mesh: &Mesh, certificate: &Certificate) -> CheckReport {
+    pub fn new(path: &Path, mesh: &Mesh, certificate: &Certificate, measures: &Measures, run: Run) -> CheckReport {
         let counts = |(cell, tally): (Cell, &Tally)| CellCounts {
             cell: cell.name(),
             count: tally.elements,
@@ -67,11 +76,14 @@ impl CheckReport {
         CheckReport {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
+            run,
             mesh: path.display().to_string(),
             order: mesh.order().into(),
             certified: certificate.holds(),
             cells: certificate.tallies().map(counts).collect(),
             certificate: CertificateReport::new(mesh, certificate),
+            measures: spread(mesh, measures),
+            lowest: lowest(mesh, measures),
             #[cfg(feature = "cad")]
             association: None,
             notes: certificate.normal.into_iter().filter_map(orientation).chain(Skin::of(mesh).notes(mesh)).collect(),

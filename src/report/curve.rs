@@ -4,6 +4,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::certificate::CertificateReport;
+use super::measures::{LowElement, MeasureReport};
+use super::run::Run;
 
 /// Name and version of the JSON document.
 pub const SCHEMA: &str = "sagitta-report-2";
@@ -16,6 +18,8 @@ pub struct Report {
     pub schema: &'static str,
     /// Version of the program.
     pub version: &'static str,
+    /// When it was made, and by which command.
+    pub run: Run,
     /// The files that went in.
     pub input: Input,
     /// Polynomial order.
@@ -43,8 +47,14 @@ pub struct Report {
     pub grid_line_angles: GridLinesReport,
     /// Bounds of the mesh's smallest J / J_c and scaled Jacobian, and its worst elements.
     pub certificate: CertificateReport,
+    /// The measures of the elements, by kind of cell; empty where they were not asked for.
+    pub measures: Vec<MeasureReport>,
+    /// The 50 elements with the smallest J / J_c, worst first; empty where measures were not asked for.
+    pub lowest: Vec<LowElement>,
     /// What the smoother did.
     pub smoothing: SmoothingReport,
+    /// The smoothing sweep by sweep, at most 1000 of them; empty where it was not followed.
+    pub sweeps: Vec<SweepReport>,
     /// Closest points asked of the CAD, and how many of them are not proven to be the closest.
     pub projections: Projections,
     /// What a user should know.
@@ -247,6 +257,23 @@ pub struct SmoothingReport {
     pub start: Costs,
     /// Smallest costs at the end.
     pub end: Costs,
+}
+
+/// The mesh before a sweep of the smoother, or at its end.
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
+pub struct SweepReport {
+    /// The order that is smoothed.
+    pub order: usize,
+    /// Sweeps at this order before.
+    pub sweep: usize,
+    /// Nodes that are moved; 0 at the end.
+    pub active_nodes: usize,
+    /// Smallest `C_WCN` of the last survey.
+    pub c_wcn: Option<f64>,
+    /// Smallest `C_JAC` of the last survey.
+    pub c_jac: Option<f64>,
+    /// Elements with a cost of 0 or less.
+    pub inverted: usize,
 }
 
 /// What the smoother did at an order below the one asked for.

@@ -24,12 +24,13 @@ pub mod check;
 pub mod curve;
 #[cfg(feature = "cad")]
 pub mod feet;
-#[cfg(feature = "cad")]
 mod fields;
 #[cfg(feature = "cad")]
 pub mod groups;
 #[cfg(feature = "cad")]
 mod left_open;
+mod measures;
+mod run;
 mod schema;
 mod text;
 
@@ -37,10 +38,13 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 pub use check::CheckReport;
+pub use fields::measure_fields;
+pub use measures::{Histogram, LowElement, MeasureReport, Percentile};
+pub use run::Run;
 pub use schema::schemas;
 #[cfg(feature = "cad")]
 pub use {
-    build::{distance, report},
+    build::{distance, face_distances, measures, report, sweeps},
     curve::Report,
     feet::{CadReport, FeetReport, end_of},
     fields::fields,

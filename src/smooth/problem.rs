@@ -97,6 +97,12 @@ impl<'a> Problem<'a> {
         self.cells.par_ids()
     }
 
+    /// Costs of all elements at the positions `x` of all nodes, surveyed at `factor` divisions of an edge in multiples of the order.
+    #[must_use]
+    pub fn survey(&self, x: &[DVec3], factor: usize) -> Vec<ElementCost> {
+        self.costs(&Kernels::new(self, self.order.get() * factor), x, self.elements())
+    }
+
     /// Costs of the given elements at the positions `x` of all nodes.
     pub(super) fn costs(
         &self,

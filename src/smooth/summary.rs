@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 
-use super::problem::Kernels;
 use super::{ElementCost, Problem};
 
 /// What smoothing did.
@@ -34,7 +33,7 @@ pub struct Summary {
 impl Smoothed {
     /// Takes the costs anew, after nodes were moved by others.
     pub fn survey(&mut self, problem: &Problem, x: &[DVec3], survey_factor: usize) {
-        self.costs = problem.costs(&Kernels::new(problem, problem.order.get() * survey_factor), x, problem.elements());
+        self.costs = problem.survey(x, survey_factor);
         self.end = Summary::of(&self.costs);
     }
 }

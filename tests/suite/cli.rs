@@ -12,7 +12,8 @@ use sagitta::mesh::EntityKey;
 use serde_json::Value;
 
 /// In an order in which files that one's examples make are there for the next.
-const COMMANDS: [&str; 9] = ["curve", "check", "convert", "link", "validate", "explain", "info", "groups", "project"];
+const COMMANDS: [&str; 11] =
+    ["curve", "check", "convert", "picture", "report", "link", "validate", "explain", "info", "groups", "project"];
 
 #[test]
 fn help_of_every_command_has_its_examples_and_exit_codes() {
@@ -85,10 +86,11 @@ fn run(commands: &[String], dir: &Path) -> String {
     for command in commands {
         let command = command.split('#').next().unwrap();
         let place = |word: &str| -> OsString {
-            let made = [".msh", ".mesh", ".su2", ".h5", ".cgns", ".vtu", ".json", ".csv", ".xml", ".step"]
-                .iter()
-                .any(|end| word.ends_with(end))
-                && !root().join(word).exists();
+            let made =
+                [".msh", ".mesh", ".su2", ".h5", ".cgns", ".vtu", ".json", ".csv", ".xml", ".step", ".html", ".png"]
+                    .iter()
+                    .any(|end| word.ends_with(end))
+                    && !root().join(word).exists();
             if made { dir.join(Path::new(word).file_name().unwrap()).into() } else { word.into() }
         };
         let arguments: Vec<OsString> = command.split_whitespace().map(place).collect();

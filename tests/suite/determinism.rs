@@ -14,7 +14,7 @@ struct Left {
 }
 
 /// Keys of the report that may differ.
-const MACHINE: [&str; 3] = ["seconds", "threads", "peak_memory"];
+const MACHINE: [&str; 4] = ["seconds", "threads", "peak_memory", "run"];
 
 fn run(dir: &Path, case: &str, order: &str, extension: &str, threads: usize) -> Left {
     // The same names in each run, as the report and the error messages name them.

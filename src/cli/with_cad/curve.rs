@@ -14,12 +14,15 @@ use crate::cli::exit::{DONE, NOT_CERTIFIED, OFF_CAD, STOPPED};
 use crate::cli::files::Files;
 use crate::cli::form::{self, Form};
 use crate::cli::output::{Beside, Failure, message, print, write_json};
+use crate::cli::page::{command, html_name, write_page};
 use crate::cli::{input, threads};
 use crate::curve::{Checkpointing, Curved, Job, Preview, Settings, Trace};
 use crate::element::Order;
 use crate::formats::{self, Field, WriteOptions};
+use crate::html::Page;
 use crate::mesh::{Inconsistent, Mesh};
-use crate::report::{fields, left_open, report, undecided};
+use crate::report::{Report, Run, face_distances, fields, left_open, measures, report, sweeps, undecided};
+use crate::scene::Measures;
 use crate::smooth;
 
 /// Options of `sagitta curve`.
@@ -36,8 +39,8 @@ pub(in crate::cli) struct Options {
     /// Polynomial order of the curved mesh: 2, 3 or 4
     #[arg(long, value_name = "P", value_parser = order)]
     order: Order,
-    #[arg(short, long, value_name = "OUT", required_unless_present = "dry_run", help = form::output("The curved mesh"))]
-    output: Option<PathBuf>,
+    #[arg(short, long, value_name = "OUT", required_unless_present = "dry_run", help = form::output("The curved mesh; given again it is written again, in another format, and --for is for the first"))]
+    output: Vec<PathBuf>,
     /// The mesh is one of triangles and quadrilaterals on CAD faces, without a volume: its nodes are put on the CAD and fitted to it, and
     /// its faces proven free of folds, on the CAD's side; nothing is smoothed
     #[arg(long, conflicts_with_all = ["checkpoint", "resume", "curve_layers"])]
@@ -54,6 +57,9 @@ pub(in crate::cli) struct Options {
     /// Also write the report as JSON
     #[arg(long, value_name = "R.json")]
     report: Option<PathBuf>,
+    /// Also write a page for any browser: all figures, and the mesh in space with its worst elements
+    #[arg(long, value_name = "FILE.html", value_parser = html_name, conflicts_with = "dry_run")]
+    html: Option<PathBuf>,
     /// Write the boundary faces that belong to the CAD and are not on it as a mesh to look at: a group a cause, and their distance
     #[arg(long, value_name = "FILE.vtu")]
     open_faces: Option<PathBuf>,
@@ -151,17 +157,31 @@ impl Options {
         }
     }
 
+    /// The meshes that are written.
+    fn outputs(&self) -> impl Iterator<Item = &PathBuf> {
+        self.output.iter().filter(|_| !self.dry_run)
+    }
+
     fn files(&self) -> Files {
         let written = |path: &Option<PathBuf>| path.clone().filter(|_| !self.dry_run);
         Files::of_mesh(&self.mesh)
             .reads("--cad", Some(&self.cad))
             .reads("--linkage", self.linkage.as_ref())
             .reads("--resume", self.resume.as_ref())
-            .writes_mesh(written(&self.output), self.form.solver())
+            .writes_mesh(self.outputs().next(), self.form.solver())
+            .writes_meshes_beside("--output", self.outputs().skip(1))
             .writes("--report", self.report.as_ref())
+            .writes("--html", self.html.as_ref())
             .writes("--open-faces", self.open_faces.as_ref())
             .writes("--trace", written(&self.trace))
             .writes("--checkpoint", written(&self.checkpoint))
+    }
+
+    /// Whether a file is asked for that tells of the measures of the elements.
+    fn tells_measures(&self) -> bool {
+        let first = self.outputs().take(1).any(|path| formats::shows_fields(path, self.form.solver()));
+        let shown = first || self.outputs().skip(1).any(|path| formats::shows_fields(path, None));
+        shown || self.report.is_some() || self.html.is_some()
     }
 
     fn job(&self) -> Job {
@@ -172,7 +192,7 @@ impl Options {
             cad_scale: self.reading.scale(),
             reading: self.reading.options(),
             mesh_reading: input::reading(),
-            solver: self.output.clone().zip(self.form.solver()),
+            solver: self.output.first().cloned().zip(self.form.solver()),
             settings: self.settings(),
         }
     }
@@ -206,7 +226,7 @@ impl Options {
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     options.files().check()?;
     let job = options.job();
-    let Some(output) = options.output.as_ref().filter(|_| !options.dry_run) else {
+    let Some(output) = options.outputs().next() else {
         return dry_run(&job, options);
     };
     let limit = options.time_limit.map(Duration::from_secs_f64);
@@ -224,18 +244,31 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     };
     // The mesh first; and the rest also where the mesh could not be written.
     let missing = missing(options, &curved).filter(|_| !options.keep_invalid);
-    let written = if missing.is_none() { write(options, output, &curved) } else { Ok(Vec::new()) };
+    let measures = if options.tells_measures() { measures(&curved) } else { Measures::default() };
+    let written = if missing.is_none() { write(options, output, &curved, &measures) } else { Ok(Vec::new()) };
     let traced = options.trace.as_ref().map_or(Ok(()), |path| trace.write(path, &curved.smoothed));
+    let swept = sweeps(&trace.sweeps(&curved.smoothed));
     monitor.finish();
     let mut beside = Beside::default();
     beside.tell(kept);
     beside.tell(traced);
+    let mut further = Vec::new();
+    for path in options.outputs().skip(1).filter(|_| missing.is_none()) {
+        match options.form.write_beside(path, &curved.mesh, || fields(&curved, &measures)) {
+            Ok(notes) => further.push((path, notes)),
+            Err(error) => beside.tell(Err(error)),
+        }
+    }
     if let Some(path) = &options.open_faces {
         beside.tell(write_left_open(path, left_open(&curved)));
     }
-    let report = report(&job, &curved);
+    let mut report = report(&job, &curved, &measures, Run::ending_now(command()));
+    report.sweeps = swept;
     if let Some(path) = &options.report {
         beside.tell(write_json(path, &report));
+    }
+    if let Some(path) = &options.html {
+        beside.tell(page(path, &report, &curved, &measures));
     }
     let stop = monitor.stop.map_or_else(String::new, |stop| format!("\n{stop}"));
     beside.tell(print(&format!("{report}{stop}")));
@@ -246,6 +279,10 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
         None => {
             let notes: String = notes.iter().map(|note| format!("note: {note}\n")).collect();
             beside.tell(print(&format!("{notes}written: {written}")));
+            for (path, notes) in further {
+                let notes: String = notes.iter().map(|note| format!("note: {note}\n")).collect();
+                beside.tell(print(&format!("{notes}written: {}", path.display())));
+            }
         }
     }
     Ok(beside.exit_code(exit_code(options, &curved)))
@@ -291,9 +328,17 @@ fn write_left_open(path: &Path, faces: Result<(Mesh, Vec<Field>), Inconsistent>)
     Ok(())
 }
 
+/// Writes the page.
+fn page(path: &Path, report: &Report, curved: &Curved, measures: &Measures) -> Result<(), Failure> {
+    let distances = face_distances(curved);
+    let page = Page::new(report, &curved.mesh, measures)?;
+    write_page(path, &page.text(|face| distances.get(&face).copied())?)
+}
+
 /// Writes the mesh; returns notes.
-fn write(options: &Options, output: &Path, curved: &Curved) -> Result<Vec<String>, Failure> {
-    let fields = if formats::shows_fields(output, options.form.solver()) { fields(curved) } else { Vec::new() };
+fn write(options: &Options, output: &Path, curved: &Curved, measures: &Measures) -> Result<Vec<String>, Failure> {
+    let fields =
+        if formats::shows_fields(output, options.form.solver()) { fields(curved, measures) } else { Vec::new() };
     Ok(options.form.write(output, &curved.mesh, &fields)?)
 }
 

@@ -1,5 +1,6 @@
 //! The commands that read CAD.
 
+mod cad_file;
 mod curve;
 mod groups;
 mod link;
@@ -20,6 +21,7 @@ use clap::Subcommand;
 use super::help;
 use super::output::Failure;
 
+pub(super) use cad_file::CadFile;
 pub(super) use model::describe;
 pub(super) use room::Room;
 pub(super) use values::seconds;

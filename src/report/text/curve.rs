@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::{LISTED, certificate, number, patch, position};
 use crate::report::Report;
-use crate::report::curve::{PlaneReport, WallVerdict};
+use crate::report::curve::{PatchReport, PlaneReport, WallVerdict};
 
 impl Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -74,6 +74,13 @@ impl Report {
             let groups = if p.cad_groups.is_empty() { "none".to_owned() } else { p.cad_groups.join("; ") };
             let (name, moved) = (patch(&p.names, &p.entity), p.node_move_max);
             writeln!(f, "{name:<24}{:>9}{distance:>14}{moved:>11.2e}  {groups}", p.faces)?;
+        }
+        let far = |p: &PatchReport| p.cad_distance_max.map_or(f64::NEG_INFINITY, |far| far);
+        if let Some(farthest) = self.patches.iter().max_by(|a, b| far(a).total_cmp(&far(b)))
+            && let Some(distance) = farthest.cad_distance_max
+        {
+            let unit = if self.input.cad_scale == 1.0 { format!(" {}", self.input.cad_unit) } else { String::new() };
+            writeln!(f, "farthest from the CAD: {distance:.2e}{unit}, {}", patch(&farthest.names, &farthest.entity))?;
         }
         if self.faces_without_cad > 0 {
             writeln!(f, "{} boundary {}s are not associated with the CAD", self.faces_without_cad, self.side())?;

@@ -20,6 +20,10 @@ const LISTED: usize = 10;
 /// The last lines: what is proven of the elements.
 fn certificate(certificate: &CertificateReport, certified: bool, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     if certified {
+        if let Some(weakest) = certificate.worst.first() {
+            let (cell, number, at) = (weakest.cell, weakest.element, position(weakest.position));
+            writeln!(f, "weakest element: {cell} {number} near {at}")?;
+        }
         let bounds = certificate.j_over_jc;
         let (lower, upper) = (number(bounds.lower), number(bounds.upper));
         return write!(f, "certified: every element valid, J/Jc >= {lower} everywhere (attained: {upper})");
