@@ -6,7 +6,8 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use sagitta::certify::{self, Settings};
 use sagitta::mesh::linear_positions;
-use sagitta::report::CheckReport;
+use sagitta::report::{CheckReport, Run};
+use sagitta::scene::Measures;
 
 use crate::curve::Source;
 use crate::failure::Failure;
@@ -44,7 +45,9 @@ pub(crate) fn check(
             None => None,
         };
         let certificate = certify::check(mesh, mesh.points(), corners.as_deref(), &Settings::default());
-        let report = CheckReport::new(&path, mesh, &certificate.map_err(|why| told(&why))?);
+        let certificate = certificate.map_err(|why| told(&why))?;
+        let measures = Measures { j_over_jc: certificate.minima.clone(), ..Measures::of(mesh, corners.as_deref()) };
+        let report = CheckReport::new(&path, mesh, &certificate, &measures, Run::ending_now(Vec::new()));
         let json = serde_json::to_string(&report).map_err(Failure::told)?;
         Ok::<_, Failure>((json, report.to_string()))
     })?;

@@ -162,7 +162,10 @@ impl Mesh {
     /// The report as JSON, and as text.
     fn report(&self, py: Python<'_>) -> PyResult<(String, String)> {
         let (curved, job) = self.held.curved()?;
-        let report = py.detach(|| report::report(job, curved));
+        let report = py.detach(|| {
+            let measures = report::measures(curved);
+            report::report(job, curved, &measures, report::Run::ending_now(Vec::new()))
+        });
         let json = serde_json::to_string(&report).map_err(|error| Failure::told(error).raise(py))?;
         Ok((json, report.to_string()))
     }
@@ -188,7 +191,9 @@ impl Mesh {
         let held = self.held.clone();
         let written = work::run(py, None, None, move |_| {
             let fields = match &*held {
-                Held::Curved(own) if formats::shows_fields(&path, solver) => report::fields(&own.0),
+                Held::Curved(own) if formats::shows_fields(&path, solver) => {
+                    report::fields(&own.0, &report::measures(&own.0))
+                }
                 _ => Vec::new(),
             };
             let options = WriteOptions { msh_version, msh_encoding, volume_only, physical_only, fields: &fields };

@@ -45,17 +45,17 @@ impl Binder<'_> {
         let nodes: BTreeSet<NodeId> = string.items.iter().flatten().copied().collect();
         let named: Vec<EdgeId> = string.entities.iter().filter_map(|e| edge_of(*e)).collect();
         let ids = self.without_far_doubles(named, &nodes);
-        if !ids.is_empty() {
-            if let Ok(group) = Group::of_edges(self.model, &ids) {
-                let places: Vec<DVec3> = nodes.iter().map(|n| self.mesh.points()[n.index()]).collect();
-                let farthest = group.distances(&places).into_iter().fold(0.0, f64::max);
-                if farthest <= self.slack {
-                    return Ok(Some(self.curve(ids, &string.label, group)));
-                }
-                if trusted {
-                    self.held(&group, &string.label, &string.entities, &nodes)?;
-                    return Ok(Some(self.curve(ids, &string.label, group)));
-                }
+        if !ids.is_empty()
+            && let Ok(group) = Group::of_edges(self.model, &ids)
+        {
+            let places: Vec<DVec3> = nodes.iter().map(|n| self.mesh.points()[n.index()]).collect();
+            let farthest = group.distances(&places).into_iter().fold(0.0, f64::max);
+            if farthest <= self.slack {
+                return Ok(Some(self.curve(ids, &string.label, group)));
+            }
+            if trusted {
+                self.held(&group, &string.label, &string.entities, &nodes)?;
+                return Ok(Some(self.curve(ids, &string.label, group)));
             }
         }
         let found: Option<Vec<BTreeSet<EdgeId>>> = edges.iter().map(|&e| self.candidates(e)).collect();
