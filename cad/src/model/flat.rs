@@ -63,7 +63,7 @@ mod tests {
 
     #[test]
     fn points_of_a_tilted_plane_are_flat_until_one_leaves_it() {
-        let at = |u: f64, v: f64, w: f64| DVec3::new(3e3 + u - 2.0 * v, u + v + w, 0.5 * u - v);
+        let at = |u: f64, v: f64, w: f64| DVec3::new(3e3 + u - 2.0 * v, u + v, 0.5 * u - v + w);
         let mut points: Vec<DVec3> = (0..25).map(|k| at(f64::from(k / 5) * 0.7, f64::from(k % 5) * 1.3, 0.0)).collect();
         let plane = |points: &[DVec3]| is_thin(&[Hull::of(points.to_vec())], 2);
         assert!(plane(&points) && !is_thin(&[Hull::of(points.clone())], 1));
