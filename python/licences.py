@@ -45,10 +45,9 @@ def main(folder, *binaries):
     metadata = json.loads(run("cargo", "metadata", "--format-version", "1", "--locked", "--features", "static-hdf5", "--filter-platform", "x86_64-unknown-linux-gnu"))
     crates = sorted(f"{own['name']} {own['version']}: {own['license']} {own['repository'] or ''}" for own in metadata["packages"] if own["source"])
     (folder / "rust-crates.txt").write_text("\n".join(crates) + "\n")
-    for own in metadata["packages"]:
-        if own["name"] == "hdf5-metno-src":
-            for text in Path(own["manifest_path"]).parent.glob("**/COPYING*"):
-                shutil.copy(text, folder / f"HDF5-{text.name}")
+    sources = {own["name"]: Path(own["manifest_path"]).parent for own in metadata["packages"]}
+    shutil.copy(sources["hdf5-metno-src"] / "ext/hdf5/LICENSE", folder / "HDF5.txt")
+    shutil.copy(sources["libz-sys"] / "src/zlib/LICENSE", folder / "zlib.txt")
 
 
 main(*sys.argv[1:])
