@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use sagitta::curve::Job;
+use sagitta::curve::{Job, Trace};
 
 use crate::failure::of_job;
-use crate::mesh::{Held, Mesh, solver_named};
+use crate::mesh::{Curving, Held, Mesh, solver_named};
 use crate::reading::Limits;
 use crate::settings::Wishes;
 use crate::work::{self, Follower};
@@ -67,12 +67,16 @@ pub(crate) fn curve(
     let (limit, order, linear) = (wishes.limit()?, job.settings.order, mesh.memory());
     let curved = work::run(py, wishes.threads, progress.as_ref(), move |link| {
         let mut follower = Follower::new(link, limit, order);
+        let mut trace = Trace::new(&mut follower);
         let curved = match linear {
-            Some(held) => job.run_on(held.mesh().clone(), &mut follower),
-            None => job.run(&mut follower),
+            Some(held) => job.run_on(held.mesh().clone(), &mut trace),
+            None => job.run(&mut trace),
         };
         match curved {
-            Ok(curved) => Ok(Held::Curved(Box::new((curved, job)))),
+            Ok(curved) => {
+                let sweeps = trace.sweeps(&curved.smoothed);
+                Ok(Held::Curved(Box::new(Curving { curved, job, sweeps })))
+            }
             Err(error) => Err(of_job(error, job.linkage.as_deref())),
         }
     })?;

@@ -8,7 +8,7 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use sagitta::certify::Certificate;
-use sagitta::curve::{Curved, Job};
+use sagitta::curve::{Curved, Job, Sweep};
 use sagitta::element::{Cell, Order};
 use sagitta::formats::{self, WriteOptions, msh, solver};
 use sagitta::mesh::{Block, Entity, EntityKey, NodeId, Parts, PhysicalName};
@@ -23,19 +23,26 @@ use crate::work;
 /// What a Python object holds: a mesh, or one that was curved, with all that is known of it.
 pub(crate) enum Held {
     Plain(Box<sagitta::mesh::Mesh>),
-    Curved(Box<(Curved, Job)>),
+    Curved(Box<Curving>),
+}
+
+/// A mesh that was curved, by which job, and how its smoothing went.
+pub(crate) struct Curving {
+    pub(crate) curved: Curved,
+    pub(crate) job: Job,
+    pub(crate) sweeps: Vec<Sweep>,
 }
 
 impl Held {
     pub(crate) fn mesh(&self) -> &sagitta::mesh::Mesh {
         match self {
             Held::Plain(mesh) => mesh,
-            Held::Curved(own) => &own.0.mesh,
+            Held::Curved(own) => &own.curved.mesh,
         }
     }
 
     /// The curving that the mesh comes from.
-    pub(crate) fn curved(&self) -> PyResult<&(Curved, Job)> {
+    pub(crate) fn curving(&self) -> PyResult<&Curving> {
         match self {
             Held::Curved(own) => Ok(own),
             Held::Plain(_) => Err(PyValueError::new_err("the mesh does not come from sagitta.curve")),
@@ -139,32 +146,33 @@ impl Mesh {
     /// Whether every element is proven valid and every face on the CAD free of folds.
     #[getter]
     fn certified(&self) -> PyResult<bool> {
-        Ok(self.held.curved()?.0.is_certified())
+        Ok(self.held.curving()?.curved.is_certified())
     }
 
     /// Whether the smoothing was ended early.
     #[getter]
     fn stopped(&self) -> PyResult<bool> {
-        Ok(self.held.curved()?.0.smoothed.stopped)
+        Ok(self.held.curving()?.curved.smoothed.stopped)
     }
 
     /// Proven lower bounds of J/Jc of all cells, in the order of the file.
     fn minima<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(PyArray1::from_slice(py, &self.held.curved()?.0.certificate.minima))
+        Ok(PyArray1::from_slice(py, &self.held.curving()?.curved.certificate.minima))
     }
 
     /// The cells with the smallest proven bounds, worst first: kind, place among its kind, number, bound, middle.
     fn worst(&self, count: usize) -> PyResult<Vec<Weak>> {
-        let (curved, _) = self.held.curved()?;
+        let curved = &self.held.curving()?.curved;
         Ok(weakest(&curved.mesh, &curved.certificate, count))
     }
 
     /// The report as JSON, and as text.
     fn report(&self, py: Python<'_>) -> PyResult<(String, String)> {
-        let (curved, job) = self.held.curved()?;
+        let Curving { curved, job, sweeps } = self.held.curving()?;
         let report = py.detach(|| {
             let measures = report::measures(curved);
-            report::report(job, curved, &measures, report::Run::ending_now(Vec::new()))
+            let run = report::Run::ending_now(Vec::new());
+            report::Report { sweeps: report::sweeps(sweeps), ..report::report(job, curved, &measures, run) }
         });
         let json = serde_json::to_string(&report).map_err(|error| Failure::told(error).raise(py))?;
         Ok((json, report.to_string()))
@@ -192,7 +200,7 @@ impl Mesh {
         let written = work::run(py, None, None, move |_| {
             let fields = match &*held {
                 Held::Curved(own) if formats::shows_fields(&path, solver) => {
-                    report::fields(&own.0, &report::measures(&own.0))
+                    report::fields(&own.curved, &report::measures(&own.curved))
                 }
                 _ => Vec::new(),
             };

@@ -61,7 +61,7 @@ impl Patch {
 
     /// Its faces as the boundary of the curving numbers them, in the sequence of [`Patch::nodes`], one kind after the other.
     fn faces(&self) -> PyResult<(&Curved, Vec<usize>)> {
-        let (curved, _) = self.held.curved()?;
+        let curved = &self.held.curving()?.curved;
         let all = curved.boundary.faces.iter().enumerate();
         let mut own: Vec<_> = all.filter(|(_, face)| self.entities.contains(&face.entity)).collect();
         own.sort_by_key(|(_, face)| face.cell); // stable: the file's sequence within a kind
@@ -72,7 +72,7 @@ impl Patch {
 /// The blocks of boundary elements: those that a curving puts on CAD, else the sides of the cells.
 fn side_blocks(held: &Held) -> Vec<&Block> {
     let mesh = held.mesh();
-    let of_curving = held.curved().ok().and_then(|(curved, _)| curved.boundary.faces.first());
+    let of_curving = held.curving().ok().and_then(|own| own.curved.boundary.faces.first());
     match of_curving {
         Some(face) => mesh.blocks().iter().filter(|own| own.cell.dimension() == face.cell.dimension()).collect(),
         None => mesh.side_blocks().collect(),

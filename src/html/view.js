@@ -303,7 +303,13 @@ function range() {
   return [low[k] - grown + origin[k], high[k] + grown + origin[k]];
 }
 by("axis").onchange = () => { if (by("axis").value !== "") slide(); cut(); };
-function slide() { const [low, high] = range(); by("exact").value = low + ((high - low) * by("at").value) / 1000; }
+/** Puts the plane where the slider is, in round steps of which a thousand or more make up the range. */
+function slide() {
+  const [low, high] = range();
+  const step = 10 ** Math.floor(Math.log10((high - low) / 1000));
+  const at = low + ((high - low) * by("at").value) / 1000;
+  by("exact").value = Number((Math.round(at / step) * step).toPrecision(12));
+}
 by("at").oninput = () => { slide(); cut(); };
 by("exact").onchange = cut;
 by("turn").onclick = () => { side = -side; cut(); };

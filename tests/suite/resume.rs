@@ -4,8 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use crate::common::impatient::Impatient;
-use crate::common::{Outcome, fixture, json, number, root, sagitta};
-use sagitta::curve::Job;
+use crate::common::{Outcome, fixture, json, root, sagitta};
+use sagitta::curve::{Checkpointing, Job};
 use sagitta::element::Order;
 
 /// The weeble, with work enough for several rounds.
@@ -59,35 +59,27 @@ fn order_by_order_too() {
     assert_refused(&direct, &high, "belongs to another run");
 }
 
-/// What is not valid goes back towards the mesh of the order below, also where that was not made again.
+/// What is not valid goes back towards the mesh of the order below, also where that was not made again: on the way to P4, P3 comes out inverted
+/// and goes back towards P2, which the run that goes on from P3 has not made.
 #[test]
 fn falls_back_as_without_interruption() {
     const SWEEPS: usize = 30;
     let folder = tempfile::tempdir().unwrap();
-    let file = |name: &str| folder.path().join(name);
-    let [whole, second, report, state] = ["whole.msh", "second.msh", "report.json", "state"].map(file);
+    let state = folder.path().join("state");
     let case = |end: &str| root().join(format!("fixtures/torus_coarse/torus.{end}"));
     let [mesh, cad, linkage] = ["msh", "step", "meshlink.xml"].map(case);
-    let curve_p3 = |out: &Path, more: &[&str]| {
-        let files = args!["curve", mesh, "--cad", cad, "--linkage", linkage, "-o", out, "--report", report];
-        let options = args!["--order", "3", "--max-sweeps", SWEEPS.to_string(), "--quiet"];
-        sagitta(files.into_iter().chain(options).chain(more.iter().map(Into::into))).expect(0);
-        json(&report)["smoothing"].clone()
-    };
-    let bytes = |path: &Path| fs::read(path).unwrap();
-    let smoothing = curve_p3(&whole, &["--checkpoint", text(&state)]);
-    assert!(number(&smoothing, "/sweeps") > SWEEPS as f64, "it did not go back: {smoothing}");
-    let smoothing = curve_p3(&second, &["--resume", text(&state)]);
-    assert_eq!(smoothing["lower_orders"], serde_json::json!([]), "the checkpoint is of P3");
-    assert!(bytes(&second) == bytes(&whole), "other bytes than without interruption");
-
-    // On the way to P4, P3 comes out inverted and goes back towards P2, which the run that goes on from P3 has not made.
-    let curve_p4 = |resume: Option<&Path>| {
-        let mut job = Job::new(mesh.clone(), cad.clone(), Some(linkage.clone()), Order::new(4).unwrap());
+    let job = |order: usize, resume: Option<&Path>| {
+        let mut job = Job::new(mesh.clone(), cad.clone(), Some(linkage.clone()), Order::new(order).unwrap());
         job.settings.smoothing.max_sweeps = SWEEPS;
         job.settings.resume = resume.map(Into::into);
-        job.run(&mut Impatient::new(4, 1)).unwrap()
+        job
     };
+    let mut impatient = Impatient::new(3, SWEEPS - 5);
+    let mut checkpointing = Checkpointing::new(&mut impatient, Some(state.clone()), 10);
+    job(3, None).run(&mut checkpointing).unwrap();
+    assert!(checkpointing.failure().is_none() && state.exists());
+
+    let curve_p4 = |resume: Option<&Path>| job(4, resume).run(&mut Impatient::new(4, 1)).unwrap();
     let (whole, second) = (curve_p4(None), curve_p4(Some(&state)));
     for (curved, orders) in [(&whole, 2), (&second, 1)] {
         let lower = &curved.lower_orders;
