@@ -92,9 +92,11 @@ wheel: setup-build ## dist/sagitta-*.whl for pip, with OpenCASCADE and HDF5 insi
 deb: build ## dist/sagitta_*.deb for this release of Debian, with man pages and completions; needs dpkg-dev
 	packaging/deb $(SAGITTA) dist
 
+# Built with the workspace, so that features of crates are those of the tests and nothing is built again.
 examples: setup-build ## run the programs in examples/
+	cargo build --workspace --examples --profile $(TEST_PROFILE)
 	@for example in curve_in_memory check convert project; do \
-	    echo "== $$example"; cargo run --quiet --profile $(TEST_PROFILE) --example $$example; \
+	    echo "== $$example"; $(BUILT)/examples/$$example; \
 	done
 
 fuzz: setup-build ## 10 000 mutants of the samples of every format (SAGITTA_FUZZ=N, SAGITTA_SEED=N); a quarter of an hour
