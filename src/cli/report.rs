@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::Value;
 
-use super::{form, input};
+use super::{form, input, signals};
 use crate::cli::exit::DONE;
 use crate::cli::files::Files;
 use crate::cli::output::{Beside, Failure, print};
@@ -50,6 +50,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let linear = input::linear_corners(&options.mesh, &mesh, options.linear.as_deref())?;
     let measures = Measures::of(&mesh, linear.as_deref());
     let page = Page { report, mesh: &mesh, measures: &measures };
+    signals::result_is(&options.output, DONE);
     write_page(&options.output, &page.text(|_| None)?)?;
     let mut beside = Beside::default();
     beside.tell(print(&format!("written: {}", options.output.display())));

@@ -15,7 +15,7 @@ use crate::cli::files::Files;
 use crate::cli::form::{self, Form};
 use crate::cli::output::{Beside, Failure, message, print, write_json};
 use crate::cli::page::{command, html_name, write_page};
-use crate::cli::{input, threads};
+use crate::cli::{input, signals, threads};
 use crate::curve::{Checkpointing, Curved, Job, Preview, Settings, Trace};
 use crate::element::Order;
 use crate::formats::{self, Field, WriteOptions};
@@ -244,6 +244,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     };
     // The mesh first; and the rest also where the mesh could not be written.
     let missing = missing(options, &curved).filter(|_| !options.keep_invalid);
+    signals::result_is(output, exit_code(options, &curved));
     let measures = if options.tells_measures() { measures(&curved) } else { Measures::default() };
     let written = if missing.is_none() { write(options, output, &curved, &measures) } else { Ok(Vec::new()) };
     let traced = options.trace.as_ref().map_or(Ok(()), |path| trace.write(path, &curved.smoothed));

@@ -10,7 +10,7 @@ use crate::associate::{LinkJob, Linked};
 use crate::cli::exit::DONE;
 use crate::cli::files::Files;
 use crate::cli::output::{Beside, Failure, print, write_json};
-use crate::cli::{form, input};
+use crate::cli::{form, input, signals};
 use crate::formats;
 
 /// Options of `sagitta link`.
@@ -54,6 +54,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
         mesh_reading: input::reading(),
     };
     let Linked { text, summary } = job.run()?;
+    signals::result_is(&options.output, DONE);
     formats::write_bytes(&options.output, &text)?;
     let mut beside = Beside::default();
     if let Some(path) = &options.report {

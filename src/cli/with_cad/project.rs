@@ -17,7 +17,7 @@ use crate::cli::exit::{DONE, NOT_CERTIFIED};
 use crate::cli::files::Files;
 use crate::cli::input::memory;
 use crate::cli::output::{Beside, Failure, message, print, write_json};
-use crate::cli::threads;
+use crate::cli::{signals, threads};
 use crate::formats;
 use crate::report::{CadReport, FeetReport};
 
@@ -67,12 +67,14 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let outcome = project(options, &monitor);
     monitor.finish();
     let (feet, report) = outcome?;
+    let code = if report.unproven == 0 { DONE } else { NOT_CERTIFIED };
     let mut text = Vec::new();
     points::write(&mut text, &feet)?;
     let mut beside = Beside::default();
     if streamed {
         beside.tell(print(std::str::from_utf8(&text)?.trim_end()));
     } else {
+        signals::result_is(&options.output, code);
         formats::write_bytes(&options.output, &text)?;
     }
     if let Some(path) = &options.report {
@@ -83,7 +85,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
         (true, false) => message(&report),
         (true, true) => {}
     }
-    Ok(beside.exit_code(if report.unproven == 0 { DONE } else { NOT_CERTIFIED }))
+    Ok(beside.exit_code(code))
 }
 
 fn project(options: &Options, monitor: &Monitor) -> Result<(Vec<Option<Foot>>, FeetReport), Failure> {
