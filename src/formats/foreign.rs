@@ -120,5 +120,5 @@ pub(super) fn refusal(head: &Head) -> Option<Refusal> {
         return Some(Refusal::other("a STEP file, which is CAD, not a mesh"));
     }
     let xml = head.text.starts_with(b"<");
-    xml.then(|| Refusal::other(format!("an XML file, but not a VTU mesh; {} are read", readable("and"))))
+    xml.then(|| Refusal::other(format!("an XML file, but not a VTU or Nektar++ mesh; {} are read", readable("and"))))
 }

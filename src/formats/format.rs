@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
+use glam::DVec3;
+
 use super::detect::{Head, Verdict};
 use super::error::Error;
 use super::loss::Loss;
@@ -38,6 +40,8 @@ pub struct Writer {
     pub holds: Holds,
     /// What a mesh may have and files do not hold; it is told when there is something to lose.
     pub(super) loses: &'static [Loss],
+    /// The points of a mesh as files hold it, of a format that does not hold them all.
+    pub(super) held: Option<fn(&Mesh) -> Result<Vec<DVec3>, String>>,
     pub(super) write: fn(&mut Part, &Mesh, &WriteOptions) -> Result<(), Unwritten>,
 }
 

@@ -21,6 +21,7 @@ mod loss;
 mod mfem;
 pub mod msh;
 mod names;
+mod nektar;
 mod node_order;
 mod numbers;
 mod options;
@@ -38,11 +39,13 @@ mod target;
 mod turned;
 mod ugrid;
 mod vtk;
+mod well_formed;
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use format::Input;
+use glam::DVec3;
 use recognise::{case_folder, detect};
 
 pub use error::{Error, Fault, Flaw, Place};
@@ -187,6 +190,31 @@ fn write_as(format: &Format, path: &Path, mesh: &Mesh, options: &WriteOptions<'_
     if let Some(reason) = writer.holds.refusal(&mesh) {
         return Err(refused(reason));
     }
+    let moved = match writer.held {
+        Some(held) => moved(&mesh, &held(&mesh).map_err(refused)?),
+        None => None,
+    };
     output::write(path, |part| (writer.write)(part, &mesh, options))?;
-    Ok(left_out.into_iter().chain(writer.loses.iter().filter_map(|loss| loss.note(&mesh))).collect())
+    Ok(left_out.into_iter().chain(moved).chain(writer.loses.iter().filter_map(|loss| loss.note(&mesh))).collect())
+}
+
+/// The points of a mesh as a solver has it from a file of this name; `None` where the file holds all of them.
+///
+/// # Errors
+/// Those of [`check_solver`]; [`Error::Inexpressible`].
+pub fn held(path: &Path, solver: &Solver, mesh: &Mesh) -> Result<Option<Vec<DVec3>>, Error> {
+    let file = path.to_path_buf();
+    let intake = solver.intake(path).map_err(|reason| Error::Format { file: file.clone(), reason })?;
+    let held = intake.format.writer.as_ref().and_then(|writer| writer.held);
+    held.map(|held| held(mesh)).transpose().map_err(|reason| Error::Inexpressible { file, reason })
+}
+
+/// A note of nodes that a file does not hold, and where its reader has them.
+fn moved(mesh: &Mesh, held: &[DVec3]) -> Option<String> {
+    let apart = mesh.points().iter().zip(held).filter(|(own, held)| own != held);
+    let (count, most) =
+        apart.fold((0, 0.0f64), |(count, most), (own, held)| (count + 1, most.max(own.distance(*held))));
+    (count > 0).then(|| {
+        format!("{count} nodes inside cells have no place in the file: its reader has them up to {most:.1e} away, where the faces put them")
+    })
 }

@@ -7,7 +7,7 @@ use super::cgns;
 use super::format::{Format, Holds};
 #[cfg(feature = "cgns")]
 use super::hopr;
-use super::{gmf, mfem, msh, plot3d, su2, ugrid, vtk};
+use super::{gmf, mfem, msh, nektar, plot3d, su2, ugrid, vtk};
 use crate::element::Cell;
 
 /// All formats, the most telling marks first.
@@ -21,6 +21,7 @@ pub static REGISTRY: &[&Format] = &[
     &gmf::FORMAT,
     &ugrid::FORMAT,
     &su2::FORMAT,
+    &nektar::FORMAT,
     &vtk::VTU,
     &vtk::LEGACY,
     &plot3d::FORMAT,

@@ -271,7 +271,7 @@ fn what_is_no_mesh_file_is_told() {
     };
     assert!(refused("empty.msh", b"").contains("the file is empty"));
     assert!(refused("part.msh", b"ISO-10303-21;\nHEADER;").contains("CAD, not a mesh"));
-    assert!(refused("grid.xml", b"<grid/>").contains("an XML file, but not a VTU mesh"));
+    assert!(refused("grid.xml", b"<grid/>").contains("an XML file, but not a VTU or Nektar++ mesh"));
     for (name, content, told) in [
         ("fluent.msh", &b"(0 \"GAMBIT to Fluent File\")\n(2 3)\n"[..], "a Fluent mesh, which is not read; export"),
         ("deck.nas", b"$ a comment\nBEGIN BULK\nGRID,1,,0.,0.,0.\n", "a Nastran bulk data file, which is not read"),

@@ -29,6 +29,7 @@ mod gmf;
 mod hostile;
 mod linear_positions;
 mod link;
+mod nektar;
 mod outputs;
 mod pages;
 mod partial;

@@ -1,4 +1,4 @@
-//! CGNS (HDF5), unstructured zones.
+//! CGNS (HDF5): unstructured zones, and structured ones as hexes or quadrilaterals.
 //!
 //! A file is a tree of nodes with a name, a label and an array. The HDF5 library, which some malformed files make crash or hang,
 //! turns it into plain bytes and does nothing else (`dump`): in this process, or, where [`ReadOptions::reader`] names a program,
@@ -16,6 +16,7 @@ mod node;
 mod read;
 mod sections;
 mod skin;
+mod structured;
 mod tree;
 mod type_code;
 mod write;
@@ -42,7 +43,7 @@ pub(super) static FORMAT: Format = Format {
     detect,
     reader: Some(Reader {
         holds: Holds {
-            notes: "unstructured zones; one type a section or MIXED, with or without offsets; conditions by list, range, \
+            notes: "unstructured zones, structured ones as hexes and quads; one type a section or MIXED, with or without offsets; conditions by list, range, \
                     vertices, family; zones joined; ADF where adf2hdf is installed",
             ..HOLDS
         },
@@ -54,6 +55,7 @@ pub(super) static FORMAT: Format = Format {
             ..HOLDS
         },
         loses: &[Loss::Lower, Loss::NodeNumbers, Loss::Periodic, Loss::Parameters, Loss::Zones],
+        held: None,
         write: |part, mesh, _| write::write(part.path(), mesh),
     }),
 };

@@ -36,6 +36,7 @@ pub(super) static FORMAT: Format = Format {
             Loss::Parameters,
             Loss::Zones,
         ],
+        held: None,
         write: |part, mesh, _| write::write(part.path(), mesh),
     }),
 };
