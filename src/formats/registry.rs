@@ -14,9 +14,9 @@ use crate::element::Cell;
 pub static REGISTRY: &[&Format] = &[
     &msh::FORMAT,
     #[cfg(feature = "cgns")]
-    &cgns::FORMAT,
-    #[cfg(feature = "cgns")]
     &hopr::FORMAT,
+    #[cfg(feature = "cgns")]
+    &cgns::FORMAT,
     &mfem::FORMAT,
     &gmf::FORMAT,
     &ugrid::FORMAT,

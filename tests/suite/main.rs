@@ -26,6 +26,7 @@ mod formats;
 mod fuzz_formats;
 mod gap;
 mod gmf;
+mod hopr;
 mod hostile;
 mod linear_positions;
 mod link;

@@ -24,6 +24,12 @@ pub(super) const TRANSFORM: &str = "int[IndexDimension]";
 pub(super) const PERIODIC: &str = "Periodic_t";
 pub(super) const CONNECTION_PROPERTY: &str = "GridConnectivityProperty_t";
 
+/// What stands in place of a label for arrays of HOPR's files, which have none.
+pub(in crate::formats) const HOPR: &str = "HOPR";
+
+/// Those arrays: all that is read of them.
+pub(super) const HOPR_ARRAYS: [&str; 6] = ["BCNames", "BCType", "ElemInfo", "GlobalNodeIDs", "NodeCoords", "SideInfo"];
+
 /// Everything that the reading child hands on.
 pub(super) const READ: [&str; 23] = [
     VERSION,

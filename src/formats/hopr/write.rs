@@ -6,8 +6,9 @@ use hdf5_metno as hdf5;
 use hdf5_metno::H5Type;
 use hdf5_metno::types::FixedAscii;
 
+use super::rows;
 use super::sides::{self, Sides};
-use crate::element::{Cell, Order, Tables, lattice};
+use crate::element::{Cell, Order};
 use crate::formats::cgns::create;
 use crate::formats::part::Unwritten;
 use crate::mesh::Mesh;
@@ -120,17 +121,6 @@ fn side_info(file: &hdf5::File, order: Order, sides: &Sides) -> Result<(), Unwri
     raw(file, "BCNames", &[names.len()], &names)?;
     let kinds: Vec<i32> = sides.conditions.iter().flat_map(|own| own.kind).collect();
     raw(file, "BCType", &[names.len(), 4], &kinds)
-}
-
-/// For each place of an element's nodes row by row, the first axis fastest, the node in internal order.
-fn rows(cell: Cell, order: Order) -> &'static [usize] {
-    static TABLES: Tables<Vec<usize>> = Tables::new();
-    TABLES.get(cell, order, || {
-        let nodes = lattice(cell, order);
-        let mut places: Vec<usize> = (0..nodes.len()).collect();
-        places.sort_by_key(|&n| [nodes[n][2], nodes[n][1], nodes[n][0]]);
-        places
-    })
 }
 
 /// `NodeCoords` and `GlobalNodeIDs`; how many different nodes there are. They are numbered in their order, from 1, without gaps.
