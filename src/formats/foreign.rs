@@ -75,11 +75,6 @@ const MESHES: &[Foreign] = &[
         remedy: "export the mesh as CGNS",
         is: |head| head.bytes.starts_with(b"#!TD") || first(head, "TITLE") || first(head, "VARIABLES"),
     },
-    Foreign {
-        name: "a file of an OpenFOAM case",
-        remedy: "write the mesh in another format; polyhedra cannot be curved",
-        is: |head| head.lines().iter().any(|line| line == "FoamFile"),
-    },
     Foreign { name: "an XDMF file", remedy: MESHIO, is: |head| head.text.starts_with(b"<") && holds(head, b"<Xdmf") },
 ];
 

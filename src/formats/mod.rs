@@ -13,6 +13,7 @@ mod error;
 mod field;
 mod foreign;
 mod format;
+mod from_faces;
 mod gmf;
 mod grid_layout;
 #[cfg(feature = "cgns")]
@@ -24,6 +25,7 @@ mod names;
 mod nektar;
 mod node_order;
 mod numbers;
+mod openfoam;
 mod options;
 mod orders;
 mod output;
@@ -46,7 +48,7 @@ use std::path::{Path, PathBuf};
 
 use format::Input;
 use glam::DVec3;
-use recognise::{case_folder, detect};
+use recognise::detect;
 
 pub use error::{Error, Fault, Flaw, Place};
 pub use field::{Field, Support, Values};
@@ -79,10 +81,9 @@ pub fn read(path: &Path) -> Result<Mesh, Error> {
 /// Those of [`read`].
 pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Mesh, Error> {
     let refused = |reason| Error::Format { file: path.to_path_buf(), reason };
-    if let Some(refusal) = case_folder(path) {
-        return Err(refused(refusal.reason));
-    }
-    let input = Input::open(path)?;
+    let faces = openfoam::faces(path);
+    let own = faces.as_deref().unwrap_or(path);
+    let input = Input::open(own)?;
     let format = detect(&input.head()).map_err(|refusal| refused(refusal.reason))?;
     options.check_length(input.length).map_err(refused)?;
     let Some(reader) = &format.reader else { return Err(refused(format!("{} is written only", format.name))) };
@@ -98,10 +99,8 @@ pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Mesh, Error> {
 /// # Errors
 /// [`Error::Io`].
 pub fn is_mesh(path: &Path) -> Result<bool, Error> {
-    if case_folder(path).is_some() {
-        return Ok(true);
-    }
-    Ok(detect(&Input::open(path)?.head()).map_or_else(|refusal| refusal.is_mesh, |_| true))
+    let faces = openfoam::faces(path);
+    Ok(detect(&Input::open(faces.as_deref().unwrap_or(path))?.head()).map_or_else(|refusal| refusal.is_mesh, |_| true))
 }
 
 /// Whether a mesh of about `expected` bytes could be written under this name, for a solver where one is given: to be asked before

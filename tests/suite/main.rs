@@ -31,6 +31,7 @@ mod hostile;
 mod linear_positions;
 mod link;
 mod nektar;
+mod openfoam;
 mod outputs;
 mod pages;
 mod partial;

@@ -193,16 +193,16 @@ fn what_nektar_cannot_have_is_refused() {
     };
     assert!(refused(&curved(ZOO, 3)).contains("no pyramid of P3"));
     // Two prisms that stand across one another: the edges of one join the triangle of the other.
-    let at = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 0], [1, 1, 1]];
+    let at = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 1, 1], [1, 0, 1], [2, 0, 1], [2, 2, 1]];
     let points: Vec<DVec3> = at.iter().map(|x| DVec3::from(x.map(f64::from))).collect();
     let mut parts = sagitta::mesh::Parts { points, ..Default::default() };
     let nodes = |own: [usize; 6]| own.map(|n| NodeId::new(n).unwrap());
     let key = sagitta::mesh::EntityKey::new(3, 1);
-    parts.push(Cell::Prism, key, &nodes([0, 1, 2, 3, 4, 5]));
-    // Its triangles hold two corners of one edge of the first.
-    parts.push(Cell::Prism, key, &nodes([1, 4, 6, 2, 5, 7]));
+    parts.push(Cell::Prism, key, &nodes([0, 1, 2, 3, 5, 4]));
+    // Its edges join the triangles of the first: 1 to 2 and 5 to 4.
+    parts.push(Cell::Prism, key, &nodes([1, 5, 6, 2, 4, 7]));
     let told = refused(&Mesh::new(parts).unwrap());
-    assert!(told.contains("collapses another edge than its neighbours") || told.contains("in a circle"), "{told}");
+    assert!(told.contains("collapses another edge than its neighbours"), "{told}");
 }
 
 fn read_text(name: &str, text: &str) -> Result<Mesh, String> {
@@ -277,8 +277,10 @@ fn damage_is_told_with_place_and_thing() {
     };
     assert!(refused("DIM=\"3\"", "DIM=\"4\"").contains("DIM is \"4\""));
     assert!(refused("<V ID=\"7\">", "<V ID=\"6\">").contains("VERTEX 6 is there twice"));
-    assert!(refused("<E ID=\"0\"> 0", "<E ID=\"0\"> 900000").contains("EDGE 0 names vertex 900000"));
-    assert!(refused("<E ID=\"0\"> 0", "<E ID=\"0\"> 0 1").contains("EDGE 0 has 3 numbers"));
+    assert!(refused("<E ID=\"0\"> ", "<E ID=\"0\"> 900000 ").contains("EDGE 0 has 3 numbers"));
+    let end = text.split_once("<E ID=\"0\"> ").unwrap().1.split(' ').next().unwrap().to_owned();
+    let told = refused(&format!("<E ID=\"0\"> {end} "), "<E ID=\"0\"> 900000 ");
+    assert!(told.contains("EDGE 0 names vertex 900000"), "{told}");
     assert!(refused("NUMPOINTS=\"3\"", "NUMPOINTS=\"4\"").contains("has 3 points, and 4 are announced"));
     assert!(refused("EDGEID=\"0\"", "EDGEID=\"900000\"").contains("900000"));
     assert!(refused("TYPE=\"PolyEvenlySpaced\"", "TYPE=\"Odd\"").contains("points of \"Odd\""));

@@ -5,6 +5,7 @@
 
 mod fault;
 mod read;
+mod rows;
 mod sides;
 mod write;
 
@@ -12,7 +13,7 @@ use super::cgns;
 use super::detect::{Head, Verdict};
 use super::format::{Format, Holds, Reader, Writer};
 use super::loss::Loss;
-use crate::element::{Cell, Order, Tables, lattice};
+use crate::element::{Cell, Order};
 
 /// The format of the preprocessors HOPR and PyHOPE.
 pub(super) static FORMAT: Format = Format {
@@ -54,15 +55,4 @@ fn detect(head: &Head) -> Verdict {
     let is_other = [".msh.h5", ".cas.h5", ".dat.h5"].iter().any(|ending| name.ends_with(ending)) || holds(b"VTKHDF");
     let is_named = FORMAT.is_name(head.path) && !is_other;
     if is_hdf5 && (is_named || holds(b"ElemInfo")) { Verdict::ByContent } else { Verdict::No }
-}
-
-/// For each place of an element's nodes row by row, the first axis fastest, the node in internal order.
-fn rows(cell: Cell, order: Order) -> &'static [usize] {
-    static TABLES: Tables<Vec<usize>> = Tables::new();
-    TABLES.get(cell, order, || {
-        let nodes = lattice(cell, order);
-        let mut places: Vec<usize> = (0..nodes.len()).collect();
-        places.sort_by_key(|&n| [nodes[n][2], nodes[n][1], nodes[n][0]]);
-        places
-    })
 }

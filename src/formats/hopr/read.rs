@@ -113,7 +113,7 @@ impl File<'_> {
                 self.tree.flaw(HoprFault::Range { element: number, first: row[4], last: row[5], wanted })
             })?;
             let mut nodes = vec![NodeId::default(); wanted];
-            rows(cell, self.order).iter().zip(own).for_each(|(&slot, &node)| nodes[slot] = node);
+            rows::of(cell, self.order).iter().zip(own).for_each(|(&slot, &node)| nodes[slot] = node);
             Ok((cell, i32::try_from(row[1]).unwrap_or(1).max(1), nodes))
         };
         let table = self.table("ElemInfo", ELEMENT)?;

@@ -134,7 +134,7 @@ fn nodes_of(file: &hdf5::File, mesh: &Mesh, count: usize) -> Result<usize, Unwri
     }
     let (mut points, mut numbers) = (Vec::with_capacity(3 * count), Vec::with_capacity(count));
     for cell in mesh.cells().iter() {
-        for &slot in rows(cell.cell, mesh.order()) {
+        for &slot in rows::of(cell.cell, mesh.order()) {
             let node = cell.nodes[slot].index();
             points.extend(mesh.points()[node].to_array());
             numbers.push(used[node]);

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
-use super::composite::Membership;
+use super::composite::{self, Membership};
 use super::curve;
 use super::fault::NektarFault;
 use super::held::continued;
@@ -232,7 +232,12 @@ impl Entities {
         for place in own {
             let wish = if own.len() == 1 { Some(tag) } else { number(place) };
             match &tables.composites[*place].name {
-                Some(name) => groups.push(assembly.group(key.dimension, name, wish)),
+                Some(name) => {
+                    // Cells of several kinds stand in several composites of one name.
+                    let lowest = composite::lowest(tables, name, dimension == tables.dimension);
+                    let wish = lowest.and_then(|id| i32::try_from(id).ok()).filter(|&id| id > 0).or(wish);
+                    groups.push(assembly.group(key.dimension, name, wish));
+                }
                 None => groups.extend(wish),
             }
         }

@@ -17,6 +17,16 @@ pub(super) struct Membership {
     pub(super) lower: usize,
 }
 
+/// The lowest number of composites of a name that hold cells, or sides.
+pub(super) fn lowest(tables: &Tables, name: &str, of_cells: bool) -> Option<i64> {
+    let is = |own: &&Listed| {
+        let letter = own.members.trim_start().chars().next().unwrap_or(' ');
+        let holds_cells = matches!(kind(tables.dimension, letter), Some(Kind::Cells));
+        own.name.as_deref() == Some(name) && holds_cells == of_cells
+    };
+    tables.composites.iter().filter(is).map(|own| own.id).min()
+}
+
 /// What the letters of a composite mean.
 enum Kind {
     Cells,

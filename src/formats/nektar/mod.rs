@@ -44,7 +44,7 @@ pub(super) static FORMAT: Format = Format {
     writer: Some(Writer {
         holds: Holds {
             notes: "as text; curves of edges and faces that are not straight, pyramids to P2; nodes inside cells are where Nektar++ \
-                    makes them from the faces; also for NekMesh",
+                    makes them from the faces",
             ..HOLDS
         },
         loses: &[
