@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 use super::labels;
 use super::sections::Section;
 use super::skin;
-use super::structured::Grid;
+use super::structured::{Faces, Grid};
 use super::tree::{Ints, Tree};
 use super::zone::Zone;
 use crate::element::Cell;
@@ -172,7 +172,7 @@ impl<'a> Conditions<'a> {
     }
 
     /// The entities of a structured zone's conditions, each with the corners of its faces; a face is in the first that covers it.
-    pub(super) fn of_grid(&mut self, zone: &Zone, grid: &Grid) -> Result<Vec<(EntityKey, Vec<Vec<usize>>)>, Flaw> {
+    pub(super) fn of_grid(&mut self, zone: &Zone, grid: &Grid) -> Result<Vec<(EntityKey, Faces)>, Flaw> {
         let mut found = Vec::new();
         let mut taken: HashSet<Vec<usize>> = HashSet::new();
         for node in zone.tree.all(labels::ZONE_BC).flat_map(|parent| parent.all(labels::BC)) {

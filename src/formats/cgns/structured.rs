@@ -12,6 +12,9 @@ pub(super) struct Grid {
     dimension: usize,
 }
 
+/// Faces by the places of their corners among the points of the zone.
+pub(super) type Faces = Vec<Vec<usize>>;
+
 /// First and last of a range of indices, counted from 1, along as many axes as the zone has; the first may be beyond the last.
 type Range = [[i64; 3]; 2];
 
@@ -72,7 +75,7 @@ impl Grid {
 
     /// The points of the corners of the faces that a condition covers, by its range and where that counts; `None` where it is no part
     /// of a layer.
-    pub(super) fn faces(&self, [first, last]: Range, location: &str) -> Option<Vec<Vec<usize>>> {
+    pub(super) fn faces(&self, [first, last]: Range, location: &str) -> Option<Faces> {
         let flat: Vec<usize> = (0..self.dimension).filter(|&axis| first[axis] == last[axis]).collect();
         let is_outer = |axis: &usize| first[*axis] == 1 || first[*axis] == self.size[*axis] as i64;
         let normal = match location {

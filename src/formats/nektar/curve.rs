@@ -30,8 +30,8 @@ pub(super) fn face_order(cell: Cell, curve: &Points) -> Result<Order, NektarFaul
 /// Gauss-Lobatto points of the unit interval.
 fn lobatto(order: Order) -> Vec<f64> {
     let half: &[f64] = match order.get() {
-        3 => &[0.0, 0.276_393_202_250_021_03],
-        4 => &[0.0, 0.172_673_164_646_011_43, 0.5],
+        3 => &[0.0, 0.276_393_202_250_021],
+        4 => &[0.0, 0.172_673_164_646_011_4, 0.5],
         p => return (0..=p).map(|i| i as f64 / p as f64).collect(),
     };
     let p = order.get();
