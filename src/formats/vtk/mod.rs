@@ -9,7 +9,6 @@ mod header;
 mod legacy;
 pub(super) mod node_order;
 pub(super) mod type_code;
-mod well_formed;
 mod write;
 mod xml;
 
@@ -41,6 +40,7 @@ pub(super) static VTU: Format = Format {
             ..HOLDS
         },
         loses: &[Loss::NodeNumbers, Loss::Names, Loss::Periodic, Loss::Conditions, Loss::Parameters, Loss::Zones],
+        held: None,
         write: |part, mesh, options| part.stream(|out| write::write(out, mesh, options.fields, options.volume_only)),
     }),
 };
