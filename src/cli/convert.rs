@@ -24,6 +24,7 @@ pub(super) struct Options {
 /// Reads a mesh and writes it in another format.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     Files::of_mesh(&options.mesh).writes_mesh(Some(&options.output), options.form.solver()).check()?;
+    options.form.check(std::slice::from_ref(&options.output))?;
     let mesh = input::mesh(&options.mesh)?;
     let written = options.form.write(&options.output, &mesh, &[])?;
     let mut beside = Beside::default();

@@ -29,6 +29,9 @@ pub(super) struct Options {
     /// The linear mesh that it was made from: the reference of the Jacobians that colours show [default: each element's own corners]
     #[arg(long, value_name = "P1MESH")]
     linear: Option<PathBuf>,
+    #[cfg(feature = "cad")]
+    #[command(flatten)]
+    cad: super::with_cad::CadFile,
 }
 
 /// The longest report that is read, in bytes.
@@ -36,11 +39,13 @@ const LONGEST: u64 = 1 << 30;
 
 /// Makes a page of a report and its mesh.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
-    Files::of_mesh(&options.mesh)
+    let files = Files::of_mesh(&options.mesh)
         .reads("the report", Some(&options.report))
         .reads("--linear", options.linear.as_ref())
-        .writes("--output", Some(&options.output))
-        .check()?;
+        .writes("--output", Some(&options.output));
+    #[cfg(feature = "cad")]
+    let files = options.cad.files(files);
+    files.check()?;
     let report = read(&options.report)?;
     let mesh = input::mesh(&options.mesh)?;
     fits(&report, &mesh).map_err(|why| {
@@ -50,7 +55,11 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let linear = input::linear_corners(&options.mesh, &mesh, options.linear.as_deref())?;
     let measures = Measures::of(&mesh, linear.as_deref());
     let page = Page { report, mesh: &mesh, measures: &measures };
-    write_page(&options.output, &page.text(|_| None)?)?;
+    #[cfg(feature = "cad")]
+    let distances = options.cad.face_distances(&mesh)?;
+    #[cfg(not(feature = "cad"))]
+    let distances = rustc_hash::FxHashMap::default();
+    write_page(&options.output, &page.text(|face| distances.get(&face).copied())?)?;
     let mut beside = Beside::default();
     beside.tell(print(&format!("written: {}", options.output.display())));
     Ok(beside.exit_code(DONE))

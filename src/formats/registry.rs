@@ -22,6 +22,9 @@ pub static REGISTRY: &[&Format] = &[
     &ugrid::FORMAT,
     &su2::FORMAT,
     &vtk::VTU,
+    &vtk::VTM,
+    #[cfg(feature = "cgns")]
+    &vtk::HDF,
     &vtk::LEGACY,
     &plot3d::FORMAT,
 ];

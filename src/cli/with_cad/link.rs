@@ -10,8 +10,10 @@ use crate::associate::{LinkJob, Linked};
 use crate::cli::exit::DONE;
 use crate::cli::files::Files;
 use crate::cli::output::{Beside, Failure, print, write_json};
-use crate::cli::{form, input};
+use crate::cli::tips::not_exchanged;
+use crate::cli::{form, input, told};
 use crate::formats;
+use crate::report::Told;
 
 /// Options of `sagitta link`.
 #[derive(Args)]
@@ -44,6 +46,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
         .writes("--output", Some(&options.output))
         .writes("--report", options.report.as_ref())
         .check()?;
+    not_exchanged(&options.mesh, &options.cad)?;
     let job = LinkJob {
         mesh: options.mesh.clone(),
         cad: options.cad.clone(),
@@ -57,7 +60,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     formats::write_bytes(&options.output, &text)?;
     let mut beside = Beside::default();
     if let Some(path) = &options.report {
-        beside.tell(write_json(path, &summary));
+        beside.tell(write_json(path, &Told { document: &summary, run: told::run(DONE) }));
     }
     beside.tell(print(&format!("{summary}\nwritten: {}", options.output.display())));
     Ok(beside.exit_code(DONE))

@@ -3,16 +3,20 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use rustc_hash::FxHashMap;
 
+use super::cad_file::with_distances;
 use super::reading::Reading;
 use super::values::order;
 use crate::associate::Summary;
 use crate::cli::files::Files;
 use crate::cli::input;
 use crate::cli::output::Failure;
+use crate::cli::tips::not_exchanged;
 use crate::curve::{Job, Settings};
 use crate::element::Order;
-use crate::mesh::Mesh;
+use crate::mesh::{FaceKey, Mesh};
+use crate::scene::face_distances;
 
 /// The CAD that a linear mesh is looked at with.
 #[derive(Args)]
@@ -44,9 +48,18 @@ impl Room {
         files.reads("--cad", self.cad.as_ref()).reads("--linkage", self.linkage.as_ref())
     }
 
+    /// The largest distance of each boundary face from the CAD, by its corners; none without CAD.
+    pub(in crate::cli) fn face_distances(&self, mesh: &Mesh) -> Result<FxHashMap<FaceKey, f64>, Failure> {
+        match &self.cad {
+            Some(path) => with_distances(path, &self.reading, |distances| face_distances(mesh, distances)),
+            None => Ok(FxHashMap::default()),
+        }
+    }
+
     /// What lies on what, and where there is little room; nothing without CAD.
     pub(in crate::cli) fn look(&self, path: &Path, mesh: &Mesh) -> Result<Option<Summary>, Failure> {
         let Some(cad) = &self.cad else { return Ok(None) };
+        not_exchanged(path, cad)?;
         if mesh.order() > Order::LINEAR {
             return Err(NotLinear { mesh: path.display().to_string(), order: mesh.order() }.into());
         }

@@ -8,6 +8,8 @@ use super::reading::Reading;
 use super::values::positive;
 use crate::cli::exit::{DONE, FINDINGS};
 use crate::cli::output::{Failure, print};
+use crate::cli::told;
+use crate::report::Told;
 use crate::validate::{self, Job};
 
 /// Options of `sagitta validate`.
@@ -45,10 +47,11 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
         reading: options.reading.options(),
         mesh_reading: crate::cli::input::reading(),
     })?;
+    let code = if validation.is_clean(options.strict) { DONE } else { FINDINGS };
     if options.json {
-        print(&serde_json::to_string_pretty(&validation)?)?;
+        print(&serde_json::to_string_pretty(&Told { document: &validation, run: told::run(code) })?)?;
     } else {
         print(&validation.to_string())?;
     }
-    Ok(if validation.is_clean(options.strict) { DONE } else { FINDINGS })
+    Ok(code)
 }
