@@ -9,7 +9,7 @@ use super::{form, input, told};
 use crate::certify::{self, Certificate, NotCertifiable, Settings};
 use crate::cli::exit::{DONE, NOT_CERTIFIED};
 use crate::cli::files::Files;
-use crate::cli::help::OUTPUT;
+use crate::cli::help::{INPUT, OUTPUT};
 use crate::cli::output::{Beside, Failure, print, write_json};
 use crate::cli::page::{html_name, write_page};
 use crate::formats::{self, WriteOptions};
@@ -24,7 +24,7 @@ pub(super) struct Options {
     #[arg(help = form::mesh("A mesh of order 1 to 4, written by any program"))]
     mesh: PathBuf,
     /// The linear mesh that it was made from: the reference of its Jacobians [default: each element's own corners]
-    #[arg(long, value_name = "P1MESH")]
+    #[arg(long, value_name = "P1MESH", help_heading = INPUT)]
     linear: Option<PathBuf>,
     #[cfg(feature = "cad")]
     #[command(flatten)]

@@ -8,6 +8,7 @@ use super::form::{self, Form};
 use super::input;
 use crate::cli::exit::DONE;
 use crate::cli::files::Files;
+use crate::cli::help::OUTPUT;
 use crate::cli::output::{Beside, Failure, print};
 
 /// Options of `sagitta convert`.
@@ -15,7 +16,7 @@ use crate::cli::output::{Beside, Failure, print};
 pub(super) struct Options {
     #[arg(help = form::mesh("A mesh of order 1 to 4"))]
     mesh: PathBuf,
-    #[arg(short, long, value_name = "OUT", help = form::output("The mesh to write"))]
+    #[arg(short, long, value_name = "OUT", help = form::output("The mesh to write"), help_heading = OUTPUT)]
     output: PathBuf,
     #[command(flatten)]
     form: Form,

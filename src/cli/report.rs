@@ -9,6 +9,7 @@ use serde_json::Value;
 use super::{form, input};
 use crate::cli::exit::DONE;
 use crate::cli::files::Files;
+use crate::cli::help::{INPUT, OUTPUT};
 use crate::cli::output::{Beside, Failure, print};
 use crate::cli::page::{html_name, write_page};
 use crate::html::Page;
@@ -24,10 +25,10 @@ pub(super) struct Options {
     #[arg(help = form::mesh("The mesh that it is of"))]
     mesh: PathBuf,
     /// The page to write, for any browser
-    #[arg(short, long, value_name = "FILE.html", value_parser = html_name)]
+    #[arg(short, long, value_name = "FILE.html", value_parser = html_name, help_heading = OUTPUT)]
     output: PathBuf,
     /// The linear mesh that it was made from: the reference of the Jacobians that colours show [default: each element's own corners]
-    #[arg(long, value_name = "P1MESH")]
+    #[arg(long, value_name = "P1MESH", help_heading = INPUT)]
     linear: Option<PathBuf>,
     #[cfg(feature = "cad")]
     #[command(flatten)]

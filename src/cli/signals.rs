@@ -73,7 +73,7 @@ fn acknowledge(signal: i32) {
     let signal = signal_name(signal).unwrap_or("signal");
     std::thread::spawn(move || {
         message(format_args!(
-            "sagitta: interrupted ({signal}): smoothing ends, and the mesh as it is then is certified and written; \
+            "sagitta: interrupted ({signal}): ends smoothing, certifies and writes the mesh;\n  \
              interrupt again to end at once and lose it"
         ));
     });

@@ -30,32 +30,38 @@ pub enum Support {
 
 /// The place of each boundary element's value, by its corners.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Places(Arc<FxHashMap<FaceKey, usize>>);
+pub struct Places {
+    by_corners: Arc<FxHashMap<FaceKey, usize>>,
+    count: usize,
+}
 
 impl Places {
-    /// Those of boundary elements, by the corners of each.
+    /// Those of boundary elements, by the corners of each; of several with the same corners the last one's counts.
     pub fn new<'a>(corners: impl IntoIterator<Item = &'a [NodeId]>) -> Places {
-        Places(Arc::new(
-            corners.into_iter().enumerate().map(|(place, corners)| (FaceKey::new(corners), place)).collect(),
-        ))
+        let (mut by_corners, mut count) = (FxHashMap::default(), 0);
+        for corners in corners {
+            by_corners.insert(FaceKey::new(corners), count);
+            count += 1;
+        }
+        Places { by_corners: Arc::new(by_corners), count }
     }
 
     /// The place of one, by its corners.
     #[must_use]
     pub fn of(&self, corners: &[NodeId]) -> Option<usize> {
-        self.0.get(&FaceKey::new(corners)).copied()
+        self.by_corners.get(&FaceKey::new(corners)).copied()
     }
 
-    /// How many there are.
+    /// How many values there are.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.0.len()
+        self.count
     }
 
     /// Whether there is none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.count == 0
     }
 }
 

@@ -8,6 +8,7 @@ use rustc_hash::FxHashMap;
 
 use super::reading::Reading;
 use crate::cli::files::Files;
+use crate::cli::help::INPUT;
 use crate::cli::output::Failure;
 use crate::mesh::{FaceKey, Mesh};
 use crate::picture::Distances;
@@ -17,7 +18,7 @@ use crate::scene::face_distances;
 #[derive(Args)]
 pub(in crate::cli) struct CadFile {
     /// The CAD that the mesh lies on: STEP, IGES or BREP
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help_heading = INPUT)]
     cad: Option<PathBuf>,
     #[command(flatten)]
     reading: Reading,

@@ -16,6 +16,7 @@ use super::reading::in_a_child;
 use super::values::{factor, seconds};
 use crate::cli::exit::{DONE, NOT_CERTIFIED};
 use crate::cli::files::Files;
+use crate::cli::help::{INPUT, OUTPUT, RUN};
 use crate::cli::input::memory;
 use crate::cli::output::{Beside, Failure, message, print, write_json};
 use crate::cli::{threads, told};
@@ -33,25 +34,25 @@ pub(in crate::cli) struct Options {
     /// CSV file with columns x, y, z; `-` for stdin
     points: PathBuf,
     /// The CAD entities to project onto, as `sagitta groups` lists them [default: all faces and free edges]
-    #[arg(long, value_name = "REF,...")]
+    #[arg(long, value_name = "REF,...", help_heading = INPUT)]
     group: Vec<String>,
     /// CSV file for the feet; `-` for stdout
-    #[arg(short, long, value_name = "FEET.csv", default_value = "-")]
+    #[arg(short, long, value_name = "FEET.csv", default_value = "-", help_heading = OUTPUT)]
     output: PathBuf,
     /// Also write the counts as JSON
-    #[arg(long, value_name = "R.json")]
+    #[arg(long, value_name = "R.json", help_heading = OUTPUT)]
     report: Option<PathBuf>,
     /// Multiply the CAD's coordinates by this factor
-    #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = factor)]
+    #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = factor, help_heading = INPUT)]
     cad_scale: f64,
     /// Threads to use [default: all cores]
-    #[arg(long, value_name = "N", value_parser = threads::number)]
+    #[arg(long, value_name = "N", value_parser = threads::number, help_heading = RUN)]
     pub(super) threads: Option<NonZeroUsize>,
     /// Seconds after which reading the CAD is abandoned
-    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = seconds)]
+    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = seconds, help_heading = INPUT)]
     cad_timeout: f64,
     /// No progress on stderr
-    #[arg(short, long)]
+    #[arg(short, long, help_heading = RUN)]
     quiet: bool,
 }
 

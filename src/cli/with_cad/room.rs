@@ -10,6 +10,7 @@ use super::reading::Reading;
 use super::values::order;
 use crate::associate::Summary;
 use crate::cli::files::Files;
+use crate::cli::help::INPUT;
 use crate::cli::input;
 use crate::cli::output::Failure;
 use crate::cli::tips::not_exchanged;
@@ -22,13 +23,13 @@ use crate::scene::face_distances;
 #[derive(Args)]
 pub(in crate::cli) struct Room {
     /// The CAD that a linear mesh was made on: also tell which elements no curving can make valid on it, and where there is little room
-    #[arg(long, value_name = "FILE", conflicts_with = "linear")]
+    #[arg(long, value_name = "FILE", conflicts_with = "linear", help_heading = INPUT)]
     cad: Option<PathBuf>,
     /// MeshLink file that links mesh and CAD
-    #[arg(long, value_name = "LINK.xml", requires = "cad")]
+    #[arg(long, value_name = "LINK.xml", requires = "cad", help_heading = INPUT)]
     linkage: Option<PathBuf>,
     /// The order that the mesh is to be curved to: 2, 3 or 4
-    #[arg(long, value_name = "P", default_value = "2", requires = "cad", value_parser = order)]
+    #[arg(long, value_name = "P", default_value = "2", requires = "cad", value_parser = order, help_heading = INPUT)]
     order: Order,
     #[command(flatten)]
     reading: Reading,

@@ -10,7 +10,7 @@ use super::type_code;
 use crate::element::{Cell, Order};
 use crate::formats::field::{Field, Support, Values};
 use crate::formats::part::Unwritten;
-use crate::mesh::{Block, Entity, EntityKey, Mesh};
+use crate::mesh::{Block, Entity, EntityKey, Mesh, NodeId};
 
 /// What of a mesh is written.
 #[derive(Clone, Copy)]
@@ -257,8 +257,9 @@ impl<'a> Grid<'a> {
         let order = self.mesh.order();
         for block in self.parts.iter().map(|part| part.block) {
             let corners = block.cell.corner_count();
-            let side = block.cell.dimension() + 1 == self.top;
-            block.elements(order).try_for_each(|nodes| visit(places.of(&nodes[..corners]).filter(|_| side)))?;
+            let is_side = block.cell.dimension() + 1 == self.top;
+            let place = |nodes: &[NodeId]| if is_side { places.of(&nodes[..corners]) } else { None };
+            block.elements(order).try_for_each(|nodes| visit(place(nodes)))?;
         }
         Ok(())
     }

@@ -92,7 +92,7 @@ impl Report {
         let (Some(distance), Some(at)) = (farthest.cad_distance_max, farthest.cad_distance_at) else { return Ok(()) };
         let (name, at) = (patch(&farthest.names, &farthest.entity), position(at));
         let unit = self.units.length.as_deref().map_or_else(String::new, |unit| format!(" {unit}"));
-        writeln!(f, "farthest from the CAD: {distance:.2e}{unit}, {name}, near {at}")
+        writeln!(f, "farthest from the CAD: {distance:.2e}{unit}, {name},\n  near {at}")
     }
 
     /// What lies on the CAD, and what belongs to none.
