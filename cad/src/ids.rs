@@ -53,6 +53,18 @@ pub enum EntityId {
     Vertex(VertexId),
 }
 
+impl EntityId {
+    /// 1-based number among those of its kind: 2 of `face:2`.
+    #[must_use]
+    pub const fn tag(self) -> u32 {
+        match self {
+            Self::Face(id) => id.tag(),
+            Self::Edge(id) => id.tag(),
+            Self::Vertex(id) => id.tag(),
+        }
+    }
+}
+
 impl fmt::Display for EntityId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -47,7 +47,7 @@ pub(crate) fn check(
         let certificate = certify::check(mesh, mesh.points(), corners.as_deref(), &Settings::default());
         let certificate = certificate.map_err(|why| told(&why))?;
         let measures = Measures { j_over_jc: certificate.minima.clone(), ..Measures::of(mesh, corners.as_deref()) };
-        let report = CheckReport::new(&path, mesh, &certificate, &measures, Run::ending_now(Vec::new()));
+        let report = CheckReport::new(&path, mesh, &certificate, &measures, Run::ending_now());
         let json = serde_json::to_string(&report).map_err(Failure::told)?;
         Ok::<_, Failure>((json, report.to_string()))
     })?;

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use pyo3::prelude::*;
 use sagitta::associate::{LinkJob, Linked};
+use sagitta::report::{Run, Told};
 use sagitta::validate::Job;
 
 use crate::curve::Source;
@@ -33,7 +34,11 @@ pub(crate) fn link(
             Some(held) => job.run_on(held.mesh().clone()),
             None => job.run(),
         }?;
-        Ok::<_, Failure>((serde_json::to_string(&summary).map_err(Failure::told)?, summary.to_string(), text))
+        Ok::<_, Failure>((
+            serde_json::to_string(&Told { document: &summary, run: Run::ending_now() }).map_err(Failure::told)?,
+            summary.to_string(),
+            text,
+        ))
     })?;
     linked.map_err(|failure| failure.raise(py))
 }
@@ -54,7 +59,10 @@ pub(crate) fn validate(
     let job = Job { linkage, mesh, cad, tolerance, cad_scale, reading, mesh_reading };
     let found = work::run(py, None, None, move |_| {
         let validation = sagitta::validate::validate(&job)?;
-        Ok::<_, Failure>((serde_json::to_string(&validation).map_err(Failure::told)?, validation.to_string()))
+        Ok::<_, Failure>((
+            serde_json::to_string(&Told { document: &validation, run: Run::ending_now() }).map_err(Failure::told)?,
+            validation.to_string(),
+        ))
     })?;
     found.map_err(|failure| failure.raise(py))
 }

@@ -171,7 +171,7 @@ impl Mesh {
         let Curving { curved, job, sweeps } = self.held.curving()?;
         let report = py.detach(|| {
             let measures = report::measures(curved);
-            let run = report::Run::ending_now(Vec::new());
+            let run = report::Run::ending_now();
             report::Report { sweeps: report::sweeps(sweeps), ..report::report(job, curved, &measures, run) }
         });
         let json = serde_json::to_string(&report).map_err(|error| Failure::told(error).raise(py))?;

@@ -109,7 +109,7 @@ impl Patch {
     /// The largest distance of each face from its CAD; NaN where it is not associated with the CAD.
     fn distance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let (curved, faces) = self.faces()?;
-        let far = |&face: &usize| report::distance(curved, face).unwrap_or(f64::NAN);
+        let far = |&face: &usize| report::distance(curved, face).map_or(f64::NAN, |own| own.max);
         Ok(PyArray1::from_vec(py, py.detach(|| faces.par_iter().map(far).collect())))
     }
 }

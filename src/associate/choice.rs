@@ -1,6 +1,6 @@
 //! Which patches are curved, where the user chooses.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::Candidates;
 use crate::mesh::{Boundary, EntityKey, Mesh};
@@ -19,10 +19,37 @@ pub enum Choice {
 
 /// A name that no patch has.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("no boundary patch is called {name:?}; there are: {known}")]
+#[error("no boundary patch is called {name:?}; {meant}there are: {known}")]
 pub struct UnknownPatch {
     name: String,
+    /// The name that is most like it, as a question.
+    meant: String,
     known: String,
+}
+
+/// Names that are less alike than this, by Jaro and Winkler (0 to 1), are no slips of the pen.
+const ALIKE: f64 = 0.8;
+
+impl UnknownPatch {
+    fn new(name: &str, all: &BTreeSet<EntityKey>, mesh: &Mesh) -> UnknownPatch {
+        let mut entities: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        for &entity in all {
+            let mut names = mesh.names_of(entity);
+            if names.is_empty() {
+                names.push(String::new());
+            }
+            names.into_iter().for_each(|own| entities.entry(own).or_default().push(entity.to_string()));
+        }
+        let likeness = |own: &String| strsim::jaro_winkler(&own.to_lowercase(), &name.to_lowercase());
+        let nearest = entities.keys().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
+        let meant = nearest.filter(|own| likeness(own) >= ALIKE);
+        let known = entities.iter().map(|(own, on)| {
+            let on = on.join(", ");
+            if own.is_empty() { on } else { format!("{own} ({on})") }
+        });
+        let meant = meant.map_or_else(String::new, |own| format!("did you mean {own:?}? "));
+        UnknownPatch { name: name.to_owned(), meant, known: known.collect::<Vec<_>>().join(", ") }
+    }
 }
 
 impl Choice {
@@ -43,8 +70,7 @@ impl Choice {
                 let before = found.len();
                 found.extend(all.iter().filter(called));
                 if found.len() == before && !all.iter().any(|entity| called(&entity)) {
-                    let known: Vec<String> = all.iter().map(|&entity| mesh.label(entity)).collect();
-                    return Err(UnknownPatch { name: name.clone(), known: known.join(", ") });
+                    return Err(UnknownPatch::new(name, &all, mesh));
                 }
             }
             Ok(found)

@@ -1,8 +1,25 @@
-//! What stands below the help of every command: examples, and its exit codes.
+//! What stands below the long help of every command: examples, and its exit codes; and the headings of options.
 
 use super::exit::{COULD_NOT_RUN, DONE, INTERRUPTED, NOT_CERTIFIED, SIDE_FILE, meaning};
 #[cfg(feature = "cad")]
 use super::exit::{FINDINGS, OFF_CAD, STOPPED};
+
+/// Headings of options: what goes in, what is to be curved, how good it is to be, what comes out, how it is run, what few need.
+pub(super) const INPUT: &str = "Input";
+#[cfg(feature = "cad")]
+pub(super) const WHAT: &str = "What to curve";
+#[cfg(feature = "cad")]
+pub(super) const QUALITY: &str = "Quality";
+pub(super) const OUTPUT: &str = "Output";
+#[cfg(feature = "cad")]
+pub(super) const RUN: &str = "Run";
+#[cfg(feature = "cad")]
+pub(super) const EXPERT: &str = "Expert";
+
+/// Below the short help.
+pub(super) fn short() -> &'static str {
+    "-h is short; --help has all options, examples and exit codes."
+}
 
 /// Of the program.
 #[cfg(feature = "cad")]
@@ -34,7 +51,7 @@ pub(super) fn curve() -> String {
       -o weeble_p2.vtu --report weeble_p2.json --html weeble_p2.html
   sagitta curve fixtures/naca0012_sharp/naca0012_sharp.msh \\
       --cad fixtures/naca0012_sharp/naca0012_sharp.step --order 3 \\
-      -o naca_p3.msh -o naca_p3.vtu";
+      -o naca_p3.msh -o naca_p3.vtm";
     below(examples, &[DONE, COULD_NOT_RUN, OFF_CAD, NOT_CERTIFIED, STOPPED, SIDE_FILE])
 }
 

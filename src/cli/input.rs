@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 use clap::Args;
 use glam::DVec3;
 
+use super::help::INPUT;
 use super::output::Failure;
 use crate::formats::{self, Error, GridLayout, ReadOptions};
 use crate::mesh::{self, Mesh, linear_positions};
@@ -14,10 +15,10 @@ use crate::mesh::{self, Mesh, linear_positions};
 #[derive(Args, Clone, Copy, Debug, Default)]
 pub(super) struct Reading {
     /// Memory that reading a file may take, as 500M or 8G; default half of the machine's
-    #[arg(long, value_name = "SIZE", value_parser = size, global = true, help_heading = "Reading files")]
+    #[arg(long, value_name = "SIZE", value_parser = size, global = true, help_heading = INPUT, hide_short_help = true)]
     memory_limit: Option<u64>,
     /// How a binary PLOT3D grid is written, where its length does not tell: lr4,several or b8,one,iblank, ...
-    #[arg(long, value_name = "LAYOUT", global = true, help_heading = "Reading files")]
+    #[arg(long, value_name = "LAYOUT", global = true, help_heading = INPUT, hide_short_help = true)]
     plot3d_layout: Option<GridLayout>,
 }
 

@@ -24,6 +24,8 @@ mod picture;
 mod report;
 mod signals;
 mod threads;
+mod tips;
+mod told;
 #[cfg(feature = "cad")]
 mod with_cad;
 
@@ -31,7 +33,7 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::process::ExitCode;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 #[cfg(feature = "cgns")]
 use crate::formats::cgns;
@@ -40,7 +42,7 @@ use output::message;
 
 /// Curves linear viscous meshes onto their CAD: P1 in, P2, P3 or P4 out, every element certified valid.
 #[derive(Parser)]
-#[command(name = "sagitta", version, after_help = help::program())]
+#[command(name = "sagitta", version, after_help = help::short(), after_long_help = help::program())]
 struct Program {
     #[command(flatten)]
     reading: input::Reading,
@@ -54,28 +56,28 @@ enum Command {
     #[command(flatten)]
     WithCad(with_cad::Command),
     /// Certify a mesh of order 1 to 4: is every element's Jacobian positive everywhere?
-    #[command(after_help = help::check())]
+    #[command(after_help = help::short(), after_long_help = help::check())]
     Check(check::Options),
     /// Write a mesh in another format, with its patches and groups
-    #[command(after_help = help::convert())]
+    #[command(after_help = help::short(), after_long_help = help::convert())]
     Convert(convert::Options),
     /// Explain the codes of findings
-    #[command(after_help = help::explain())]
+    #[command(after_help = help::short(), after_long_help = help::explain())]
     Explain(explain::Options),
     /// Describe a CAD, mesh or linkage file
-    #[command(after_help = help::info())]
+    #[command(after_help = help::short(), after_long_help = help::info())]
     Info(info::Options),
     /// Print the completions of a shell
-    #[command(after_help = help::completions())]
+    #[command(after_help = help::short(), after_long_help = help::completions())]
     Completions(completions::Options),
     /// Write the manual pages of all commands
-    #[command(after_help = help::man())]
+    #[command(after_help = help::short(), after_long_help = help::man())]
     Man(man::Options),
     /// Draw a mesh: its curved boundary, a section, its worst elements; no display is needed
-    #[command(after_help = help::picture())]
+    #[command(after_help = help::short(), after_long_help = help::picture())]
     Picture(picture::Options),
     /// Make a page for a browser of a JSON report and its mesh
-    #[command(after_help = help::report())]
+    #[command(after_help = help::short(), after_long_help = help::report())]
     Report(report::Options),
 }
 
@@ -102,14 +104,14 @@ pub fn run(arguments: Vec<OsString>) -> ExitCode {
         message(format_args!("sagitta: signals cannot be taken over: {error}"));
         return COULD_NOT_RUN.into();
     }
-    let program = match Program::try_parse_from(arguments) {
+    let program = match parsed(arguments) {
         Ok(program) => program,
-        Err(error) => {
-            // Where stderr is gone there is no one to tell.
-            let told = error.print().is_ok();
-            let code = if error.use_stderr() || !told { COULD_NOT_RUN } else { DONE };
-            return code.into();
+        Err(error) if error.use_stderr() => {
+            message(tips::told(&error));
+            return COULD_NOT_RUN.into();
         }
+        // Help, or the version.
+        Err(text) => return if text.print().is_ok() { DONE } else { COULD_NOT_RUN }.into(),
     };
     program.reading.choose();
     match run_command(&program.command) {
@@ -119,6 +121,13 @@ pub fn run(arguments: Vec<OsString>) -> ExitCode {
             COULD_NOT_RUN.into()
         }
     }
+}
+
+fn parsed(arguments: Vec<OsString>) -> Result<Program, clap::Error> {
+    let mut program = Program::command();
+    let matches = program.try_get_matches_from_mut(arguments)?;
+    told::keep(&program, &matches);
+    Program::from_arg_matches(&matches).map_err(|error| error.format(&mut program))
 }
 
 fn run_command(command: &Command) -> Result<u8, output::Failure> {

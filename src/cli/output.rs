@@ -4,6 +4,7 @@
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
 use cad::Aabb;
 
@@ -27,9 +28,41 @@ pub(super) fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
+/// How something is written above the lines that are redrawn on the terminal.
+type Above = Box<dyn Fn(&mut dyn FnMut()) + Send>;
+
+static ABOVE: Mutex<Option<Above>> = Mutex::new(None);
+
+/// From here on messages are written in this way; `None` is for a terminal without lines that are redrawn.
+#[cfg(feature = "cad")]
+pub(super) fn write_messages(above: Option<Above>) {
+    *ABOVE.lock().unwrap_or_else(PoisonError::into_inner) = above;
+}
+
 /// Writes a line on stderr; where that fails there is no one left to say so to.
 pub(super) fn message(text: impl Display) {
-    let _ = writeln!(io::stderr().lock(), "{text}");
+    let text = without_numbers_of_errors(&text.to_string());
+    let mut write = || {
+        let _ = writeln!(io::stderr().lock(), "{text}");
+    };
+    match &*ABOVE.lock().unwrap_or_else(PoisonError::into_inner) {
+        Some(above) => above(&mut write),
+        None => write(),
+    }
+}
+
+/// A message without the system's numbers of errors, which say nothing beside its words.
+fn without_numbers_of_errors(text: &str) -> String {
+    const BEGIN: &str = " (os error ";
+    let mut parts = text.split(BEGIN);
+    let mut told = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        match part.split_once(')') {
+            Some((number, rest)) if number.bytes().all(|byte| byte.is_ascii_digit()) => told += rest,
+            _ => told = told + BEGIN + part,
+        }
+    }
+    told
 }
 
 /// Writes a JSON document through a temporary name.
@@ -64,4 +97,20 @@ impl Beside {
 pub(super) fn bounds(bounds: Aabb) -> String {
     let [a, b] = [bounds.min, bounds.max];
     format!("box ({}, {}, {}) to ({}, {}, {})", a.x, a.y, a.z, b.x, b.y, b.z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::without_numbers_of_errors;
+
+    #[test]
+    fn errors_are_told_without_the_systems_numbers() {
+        for (text, told) in [
+            ("a: No such file (os error 2)", "a: No such file"),
+            ("a: no (os error 13); b (os error 2): c", "a: no; b: c"),
+            ("a (os error x) (os error 5", "a (os error x) (os error 5"),
+        ] {
+            assert_eq!(without_numbers_of_errors(text), told);
+        }
+    }
 }

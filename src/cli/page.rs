@@ -18,8 +18,3 @@ pub(super) fn write_page(path: &Path, text: &str) -> Result<(), Failure> {
     formats::write_bytes(path, text.as_bytes())?;
     Ok(())
 }
-
-/// The program and its arguments as they were given.
-pub(super) fn command() -> Vec<String> {
-    std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect()
-}

@@ -9,6 +9,7 @@ use serde_json::Value;
 use super::{form, input, signals};
 use crate::cli::exit::DONE;
 use crate::cli::files::Files;
+use crate::cli::help::{INPUT, OUTPUT};
 use crate::cli::output::{Beside, Failure, print};
 use crate::cli::page::{html_name, write_page};
 use crate::html::Page;
@@ -24,11 +25,14 @@ pub(super) struct Options {
     #[arg(help = form::mesh("The mesh that it is of"))]
     mesh: PathBuf,
     /// The page to write, for any browser
-    #[arg(short, long, value_name = "FILE.html", value_parser = html_name)]
+    #[arg(short, long, value_name = "FILE.html", value_parser = html_name, help_heading = OUTPUT)]
     output: PathBuf,
     /// The linear mesh that it was made from: the reference of the Jacobians that colours show [default: each element's own corners]
-    #[arg(long, value_name = "P1MESH")]
+    #[arg(long, value_name = "P1MESH", help_heading = INPUT)]
     linear: Option<PathBuf>,
+    #[cfg(feature = "cad")]
+    #[command(flatten)]
+    cad: super::with_cad::CadFile,
 }
 
 /// The longest report that is read, in bytes.
@@ -36,11 +40,13 @@ const LONGEST: u64 = 1 << 30;
 
 /// Makes a page of a report and its mesh.
 pub(super) fn run(options: &Options) -> Result<u8, Failure> {
-    Files::of_mesh(&options.mesh)
+    let files = Files::of_mesh(&options.mesh)
         .reads("the report", Some(&options.report))
         .reads("--linear", options.linear.as_ref())
-        .writes("--output", Some(&options.output))
-        .check()?;
+        .writes("--output", Some(&options.output));
+    #[cfg(feature = "cad")]
+    let files = options.cad.files(files);
+    files.check()?;
     let report = read(&options.report)?;
     let mesh = input::mesh(&options.mesh)?;
     fits(&report, &mesh).map_err(|why| {
@@ -50,8 +56,12 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let linear = input::linear_corners(&options.mesh, &mesh, options.linear.as_deref())?;
     let measures = Measures::of(&mesh, linear.as_deref());
     let page = Page { report, mesh: &mesh, measures: &measures };
+    #[cfg(feature = "cad")]
+    let distances = options.cad.face_distances(&mesh)?;
+    #[cfg(not(feature = "cad"))]
+    let distances = rustc_hash::FxHashMap::default();
     signals::result_is(&options.output, DONE);
-    write_page(&options.output, &page.text(|_| None)?)?;
+    write_page(&options.output, &page.text(|face| distances.get(&face).copied())?)?;
     let mut beside = Beside::default();
     beside.tell(print(&format!("written: {}", options.output.display())));
     Ok(beside.exit_code(DONE))

@@ -53,8 +53,11 @@ pub(super) fn take_over() -> std::io::Result<()> {
         for signal in signals.forever() {
             let same = first.is_none_or(|first| first.elapsed() < ONE_WISH);
             if HEEDED.load(Ordering::Relaxed) && same {
-                first.get_or_insert_with(Instant::now);
-                WISHED.store(true, Ordering::Relaxed);
+                if first.is_none() {
+                    first = Some(Instant::now());
+                    WISHED.store(true, Ordering::Relaxed);
+                    acknowledge(signal);
+                }
             } else {
                 end(signal);
             }
@@ -73,6 +76,17 @@ pub(super) fn heed() {
 #[cfg(feature = "cad")]
 pub(super) fn wished() -> bool {
     WISHED.load(Ordering::Relaxed)
+}
+
+/// Tells what becomes of the first wish, and what a second one loses; beside the work, as whoever reads stderr may have stopped reading.
+fn acknowledge(signal: i32) {
+    let signal = signal_name(signal).unwrap_or("signal");
+    std::thread::spawn(move || {
+        message(format_args!(
+            "sagitta: interrupted ({signal}): ends smoothing, certifies and writes the mesh;\n  \
+             interrupt again to end at once and lose it"
+        ));
+    });
 }
 
 /// Ends the program at once, without files half written.

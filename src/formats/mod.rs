@@ -51,7 +51,7 @@ use glam::DVec3;
 use recognise::detect;
 
 pub use error::{Error, Fault, Flaw, Place};
-pub use field::{Field, Support, Values};
+pub use field::{Field, Places, Support, Values};
 pub use format::{Format, Holds, Reader, Writer};
 pub use grid_layout::GridLayout;
 pub use options::{ReadOptions, WriteOptions};
@@ -150,6 +150,18 @@ pub fn beside(path: &Path) -> Option<PathBuf> {
 pub fn shows_fields(path: &Path, solver: Option<&Solver>) -> bool {
     let format = format_of(path, solver).ok();
     format.and_then(|format| format.writer.as_ref()).is_some_and(|writer| writer.holds.fields)
+}
+
+/// Whether a file is written as MSH by its name.
+#[must_use]
+pub fn is_msh(path: &Path) -> bool {
+    msh::FORMAT.is_name(path)
+}
+
+/// Whether a file of this name has boundary elements only where [`WriteOptions::volume_only`] does not leave them out.
+#[must_use]
+pub fn may_be_volume_only(path: &Path) -> bool {
+    shows_fields(path, None) && !vtk::VTM.is_name(path)
 }
 
 /// Writes a mesh file; the format is that of the name's ending.

@@ -61,7 +61,7 @@ pub struct WriteOptions<'a> {
     pub volume_only: bool,
     /// Without the elements below the mesh's own dimension that belong to no physical group.
     pub physical_only: bool,
-    /// Values to show, in VTU files.
+    /// Values to show, in files for viewers; in MSH files as views.
     pub fields: &'a [Field],
 }
 

@@ -101,6 +101,11 @@ impl Part {
         self.name.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending))
     }
 
+    /// The name that it will have.
+    pub(super) fn name(&self) -> &Path {
+        &self.name
+    }
+
     /// The temporary name, for a library that opens files itself.
     #[cfg(feature = "cgns")]
     pub(super) fn path(&self) -> &Path {

@@ -23,6 +23,9 @@ pub static REGISTRY: &[&Format] = &[
     &su2::FORMAT,
     &nektar::FORMAT,
     &vtk::VTU,
+    &vtk::VTM,
+    #[cfg(feature = "cgns")]
+    &vtk::HDF,
     &vtk::LEGACY,
     &openfoam::FORMAT,
     &plot3d::FORMAT,

@@ -101,7 +101,7 @@ function plain(pointer) {
 }
 
 function given() {
-  const rows = [["/run/date", "date (UTC)"], ["/run/command", "command"], ["/version", "sagitta"], ["/input/mesh", "mesh"], ["/mesh", "mesh"],
+  const rows = [["/run/date", "date (UTC)"], ["/run/command", "command"], ["/run/exit_code", "exit code"], ["/run/reason", "which means"], ["/version", "sagitta"], ["/input/mesh", "mesh"], ["/mesh", "mesh"],
     ["/input/cad", "CAD"], ["/input/cad_unit", "unit of the CAD"], ["/input/cad_scale", "CAD multiplied by"], ["/input/linkage", "linkage"],
     ["/order", "order"], ["/nodes/linear", "nodes of the linear mesh"], ["/nodes/curved", "nodes"], ["/threads", "threads"], ["/peak_memory", "peak memory, bytes"]];
   const shown = rows.filter(([pointer]) => at(pointer) !== undefined && at(pointer) !== null);
@@ -113,7 +113,7 @@ function given() {
 function curving() {
   if (!report.patches) return;
   chapter("Patches: what lies on which CAD, and how far from it", table("/patches", [["entity", "entity"], ["names", "names"], ["cad_groups", "on the CAD"], ["faces", "faces"],
-    ["cad_distance_max", "largest distance"], ["node_move_max", "largest move of a linear node"]]),
+    ["cad_distance_max", "largest distance"], ["cad_distance_at", "its place"], ["cad_distance_rms", "root mean square"], ["node_move_max", "largest move of a linear node"]]),
     element("p", { class: "small" }, "Lengths in the mesh's unit; distances at (3p)² samples a face."));
   chapter("Boundary faces off the CAD", element("h3", {}, "taken back or released for valid elements"),
     table("/off_cad", [["element", "face"], ["entity", "entity"], ["cad_distance", "distance"], ["position", "place"]]),

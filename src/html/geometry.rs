@@ -11,11 +11,19 @@ use crate::element::{Cell, Filling, Order, Tables, basis};
 use crate::mesh::{ElementId, Elements, Mesh, NodeId};
 use crate::scene::{Measures, Shown, Surface, outer};
 
-/// Bytes of faces with their nodes at most, before base64 makes four of three.
-const FACES: usize = 5_500_000;
+/// Bytes at most, before base64 makes four of three.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Room {
+    /// Of faces with their nodes.
+    pub(super) faces: usize,
+    /// Of elements with theirs.
+    pub(super) elements: usize,
+}
 
-/// Bytes of elements with their nodes at most.
-const ELEMENTS: usize = 7_000_000;
+impl Room {
+    /// That of a page that can be mailed.
+    pub(super) const PAGE: Room = Room { faces: 5_500_000, elements: 7_000_000 };
+}
 
 /// Triangles that all faces are drawn as, about, at most.
 const TRIANGLES: usize = 1_500_000;
@@ -109,15 +117,16 @@ pub(super) fn geometry(
     measures: &Measures,
     distances: &[f64],
     places: &[DVec3],
+    room: Room,
 ) -> Geometry {
     let mut left_out = Vec::new();
     let bounds = cad::Aabb::of_points(surface.faces.iter().flat_map(|face| mesh.points_of(&face.nodes)));
     let mut numbering =
         Numbering { mesh, origin: bounds.center(), places: FxHashMap::default(), coordinates: Vec::new() };
-    let faces = faces(mesh, surface, distances, &mut left_out);
+    let faces = faces(mesh, surface, distances, room.faces, &mut left_out);
     let curved = divisions(mesh.order(), faces.len());
     let faces = numbering.blocks(&faces, mesh.order(), measures, curved);
-    let elements = elements(mesh, places, &mut left_out);
+    let elements = elements(mesh, places, room.elements, &mut left_out);
     let elements =
         numbering.blocks(&elements, mesh.order(), measures, if mesh.order() == Order::LINEAR { 1 } else { 4 });
     let sides: Vec<crate::scene::Patch> = surface.patches.clone();
@@ -150,7 +159,13 @@ fn divisions(order: Order, faces: usize) -> usize {
 }
 
 /// The faces, or as many as there is room for.
-fn faces<'a>(mesh: &Mesh, surface: &'a Surface, distances: &[f64], left_out: &mut Vec<String>) -> Vec<Item<'a>> {
+fn faces<'a>(
+    mesh: &Mesh,
+    surface: &'a Surface,
+    distances: &[f64],
+    room: usize,
+    left_out: &mut Vec<String>,
+) -> Vec<Item<'a>> {
     let item = |(place, face): (usize, &'a Shown)| Item {
         cell: face.cell,
         nodes: &face.nodes,
@@ -160,7 +175,7 @@ fn faces<'a>(mesh: &Mesh, surface: &'a Surface, distances: &[f64], left_out: &mu
     };
     let all: Vec<Item> = surface.faces.iter().enumerate().map(item).collect();
     let bytes: usize = all.iter().map(bytes).sum();
-    let step = bytes.div_ceil(FACES).max(1);
+    let step = bytes.div_ceil(room).max(1);
     if step > 1 {
         let noun = if mesh.is_volume() { "boundary faces" } else { "cells" };
         let shown = all.len().div_ceil(step);
@@ -170,7 +185,7 @@ fn faces<'a>(mesh: &Mesh, surface: &'a Surface, distances: &[f64], left_out: &mu
 }
 
 /// The volumes nearest to the places, as many as there is room for.
-fn elements<'a>(mesh: &'a Mesh, places: &[DVec3], left_out: &mut Vec<String>) -> Vec<Item<'a>> {
+fn elements<'a>(mesh: &'a Mesh, places: &[DVec3], mut room: usize, left_out: &mut Vec<String>) -> Vec<Item<'a>> {
     let cells: Elements = mesh.cells();
     if !mesh.is_volume() {
         return Vec::new();
@@ -181,7 +196,6 @@ fn elements<'a>(mesh: &'a Mesh, places: &[DVec3], left_out: &mut Vec<String>) ->
     };
     let mut all: Vec<(f64, ElementId)> = cells.par_ids().map(far).collect();
     all.par_sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let mut room = ELEMENTS;
     let mut items = Vec::new();
     for (_, id) in all {
         let own = cells.get(id);

@@ -14,7 +14,7 @@ use serde_json::Value;
 
 use crate::mesh::{FaceKey, Mesh};
 use crate::scene::{Measures, Surface};
-use geometry::geometry;
+use geometry::{Room, geometry};
 
 /// Where the parts of the page go.
 const PAGE: &str = include_str!("page.html");
@@ -52,10 +52,15 @@ impl<'a> Page<'a> {
     /// # Errors
     /// [`NoPage`].
     pub fn text(&self, distance: impl Fn(FaceKey) -> Option<f64>) -> Result<String, NoPage> {
+        self.text_within(Room::PAGE, distance)
+    }
+
+    /// The page whose geometry has this room.
+    fn text_within(&self, room: Room, distance: impl Fn(FaceKey) -> Option<f64>) -> Result<String, NoPage> {
         let surface = Surface::of(self.mesh);
         let of = |face: &crate::scene::Shown| distance(FaceKey::new(&face.nodes[..face.cell.corner_count()]));
         let distances: Vec<f64> = surface.faces.iter().map(|face| of(face).unwrap_or(f64::NAN)).collect();
-        let geometry = geometry(self.mesh, &surface, self.measures, &distances, &self.places());
+        let geometry = geometry(self.mesh, &surface, self.measures, &distances, &self.places(), room);
         let script =
             format!("{}\n{}", include_str!("figures.js"), include_str!("view.js").replacen("\"use strict\";", "", 1));
         let parts: [(&str, Cow<str>); 5] = [
@@ -93,8 +98,29 @@ fn embedded(json: &str) -> String {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+
+    /// What a page has beyond its geometry: the library, the report, and the names in the geometry.
+    #[test]
+    fn a_page_has_no_more_than_its_room_and_says_what_it_leaves_out() {
+        let mesh = crate::formats::read(std::path::Path::new("fixtures/weeble/weeble.msh")).unwrap();
+        let measures = Measures::default();
+        let page = Page::new(&serde_json::json!({"lowest": []}), &mesh, &measures).unwrap();
+        let length = |faces, elements| page.text_within(Room { faces, elements }, |_| None).unwrap().len();
+        let (none, whole) = (length(1, 1), length(1 << 30, 1 << 30));
+        for (faces, elements) in [(10_000, 50_000), (20_000, 400_000)] {
+            let room = Room { faces, elements };
+            let text = page.text_within(room, |_| None).unwrap();
+            let most = none + (faces + elements) * 4 / 3 + 2000;
+            assert!(text.len() < most && most < whole, "{} bytes of {whole}, at most {most}", text.len());
+            assert!(
+                text.contains(" of 674 boundary faces: one of every ")
+                    && text.contains(" of 28242 elements that can be cut")
+            );
+        }
+    }
 
     #[test]
     fn the_page_has_a_place_for_each_part_and_the_parts_end_no_script() {

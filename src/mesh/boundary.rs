@@ -67,6 +67,12 @@ impl Boundary {
         self.faces.push(face);
     }
 
+    /// Whether its faces are the cells of `mesh`, as those of a surface mesh are.
+    #[must_use]
+    pub fn is_of_cells(&self, mesh: &Mesh) -> bool {
+        self.faces.first().is_some_and(|face| face.cell.dimension() == mesh.dimension())
+    }
+
     /// Nodes of a face in `mesh`, which has the faces of the linear mesh, in internal order.
     #[must_use]
     pub fn nodes<'m>(&self, face: usize, mesh: &'m Mesh) -> &'m [NodeId] {

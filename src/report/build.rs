@@ -4,7 +4,6 @@ use std::collections::BTreeSet;
 
 use glam::DVec3;
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
 
 use super::certificate::CertificateReport;
 use super::curve::{
@@ -12,22 +11,20 @@ use super::curve::{
     PatchReport, PlaneReport, Projections, Report, SCHEMA, SmoothingReport, StepReport, SweepReport, WallFailure,
     WallReport, WallVerdict,
 };
+use super::distance::{Distance, distance, node_distance};
 use super::finite;
 use super::measures::{lowest, spread};
-use super::run::Run;
+use super::run::{Run, Units};
 use crate::associate::{Classification, OpenFace};
 use crate::certify::{self, FaceFinding, Measured, Verdict};
 use crate::curve::layers::straight_elements;
 use crate::curve::recover::{Departure, OffCadFace};
 use crate::curve::{Curved, Job, LowerOrder, Sweep};
-use crate::element::{Cell, Order, Samples, basis};
-use crate::mesh::{EntityKey, FaceKey};
+use crate::element::{Cell, Order};
+use crate::mesh::EntityKey;
 use crate::quality::{GridLineAngles, GridLines};
 use crate::scene::Measures;
 use crate::smooth::Summary;
-
-/// Divisions of a face, in multiples of p, at which its distance from the CAD is sampled.
-const DISTANCE_DENSITY: usize = 3;
 
 /// The measures of the elements of a curved mesh, against the linear one.
 #[must_use]
@@ -50,6 +47,7 @@ pub fn report(job: &Job, curved: &Curved, measures: &Measures, run: Run) -> Repo
         schema: SCHEMA,
         version: env!("CARGO_PKG_VERSION"),
         run,
+        units: Units::with_length((curved.cad_scale == 1.0).then(|| curved.cad_unit.clone())),
         input: Input {
             mesh: job.mesh.display().to_string(),
             cad: job.cad.display().to_string(),
@@ -183,49 +181,19 @@ fn patch(curved: &Curved, entity: EntityKey) -> PatchReport {
         .iter()
         .filter_map(|f| if let Classification::Surface(s) = classification(f) { Some(s) } else { None })
         .collect();
-    let distances: Vec<f64> = faces.par_iter().filter_map(|&f| distance(curved, f)).collect();
+    let distances: Vec<Distance> = faces.par_iter().filter_map(|&f| distance(curved, f)).collect();
+    let distance = distances.into_iter().reduce(Distance::and);
     let corners = faces.iter().flat_map(|&f| &curved.boundary.corners[f]);
     PatchReport {
         entity: entity.to_string(),
         names: curved.mesh.names_of(entity),
         cad_groups: on.iter().map(|&s| curved.association.surfaces[s].label.clone()).collect(),
         faces: faces.len(),
-        cad_distance_max: distances.into_iter().reduce(f64::max),
+        cad_distance_max: distance.map(|own| own.max),
+        cad_distance_at: distance.map(|own| own.at.to_array()),
+        cad_distance_rms: distance.map(|own| own.rms()),
         node_move_max: corners.map(|n| curved.wall.displacement(n.index()).length()).fold(0.0, f64::max),
     }
-}
-
-/// The largest distance of a boundary face, by its index in [`Curved::boundary`], from the CAD that it is associated with.
-#[must_use]
-pub fn distance(curved: &Curved, face: usize) -> Option<f64> {
-    let Classification::Surface(surface) = curved.association.faces[face] else { return None };
-    let group = &curved.association.surfaces[surface].group;
-    let (order, cell) = (curved.mesh.order(), curved.boundary.faces[face].cell);
-    let nodes = curved.boundary.nodes(face, &curved.mesh);
-    let samples = Samples::survey(cell, Order::LINEAR, DISTANCE_DENSITY * order.get());
-    let far = samples.points()[..samples.count()].iter().map(|&at| {
-        let values = basis::values(cell, order, at);
-        let x: DVec3 = nodes.iter().zip(values).map(|(n, v)| curved.mesh.points()[n.index()] * v).sum();
-        group.distance(x)
-    });
-    far.reduce(f64::max)
-}
-
-/// The largest distance of a boundary face's nodes from the CAD that it is associated with.
-fn node_distance(curved: &Curved, face: usize) -> Option<f64> {
-    let Classification::Surface(surface) = curved.association.faces[face] else { return None };
-    let group = &curved.association.surfaces[surface].group;
-    let nodes = curved.boundary.nodes(face, &curved.mesh);
-    nodes.iter().map(|n| group.distance(curved.mesh.points()[n.index()])).reduce(f64::max)
-}
-
-/// The largest distance of each boundary face from the CAD that it is associated with, by its corners; of faces that are associated with none
-/// nothing stands there.
-#[must_use]
-pub fn face_distances(curved: &Curved) -> FxHashMap<FaceKey, f64> {
-    let faces = 0..curved.boundary.faces.len();
-    let of = |face: usize| Some((FaceKey::new(&curved.boundary.corners[face]), distance(curved, face)?));
-    faces.into_par_iter().filter_map(of).collect()
 }
 
 fn off_cad(curved: &Curved, off: &OffCadFace) -> OffCadReport {
@@ -236,7 +204,7 @@ fn off_cad(curved: &Curved, off: &OffCadFace) -> OffCadReport {
         released: off.departure == Departure::Released,
         order: off.order().map(Order::get),
         fraction: off.fraction(),
-        cad_distance: distance(curved, off.face),
+        cad_distance: distance(curved, off.face).map(|own| own.max),
         node_distance: node_distance(curved, off.face),
         position: middle(curved, off.face),
     }

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::certificate::CertificateReport;
 use super::measures::{LowElement, MeasureReport, lowest, spread};
-use super::run::Run;
+use super::run::{Run, Units};
 #[cfg(feature = "cad")]
 use crate::associate::Summary;
 use crate::certify::{Certificate, Tally};
@@ -27,8 +27,10 @@ pub struct CheckReport {
     pub schema: &'static str,
     /// Version of the program.
     pub version: &'static str,
-    /// When it was made, and by which command.
+    /// When it was made, by which command, and how that ended.
     pub run: Run,
+    /// The units of its numbers.
+    pub units: Units,
     /// The file.
     pub mesh: String,
     /// Polynomial order.
@@ -77,6 +79,7 @@ impl CheckReport {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
             run,
+            units: Units::with_length(None),
             mesh: path.display().to_string(),
             order: mesh.order().into(),
             certified: certificate.holds(),

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::certificate::CertificateReport;
 use super::measures::{LowElement, MeasureReport};
-use super::run::Run;
+use super::run::{Run, Units};
 
 /// Name and version of the JSON document.
 pub const SCHEMA: &str = "sagitta-report-2";
@@ -18,8 +18,10 @@ pub struct Report {
     pub schema: &'static str,
     /// Version of the program.
     pub version: &'static str,
-    /// When it was made, and by which command.
+    /// When it was made, by which command, and how that ended.
     pub run: Run,
+    /// The units of its numbers.
+    pub units: Units,
     /// The files that went in.
     pub input: Input,
     /// Polynomial order.
@@ -139,6 +141,10 @@ pub struct PatchReport {
     pub faces: usize,
     /// Largest distance of its curved faces from the CAD, at (3p)^2 samples a face; nothing where it is not associated with it.
     pub cad_distance_max: Option<f64>,
+    /// Where that is, on the curved face.
+    pub cad_distance_at: Option<[f64; 3]>,
+    /// The root mean square of the distances at these samples.
+    pub cad_distance_rms: Option<f64>,
     /// Largest move of a linear node onto the CAD.
     pub node_move_max: f64,
 }

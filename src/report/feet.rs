@@ -6,6 +6,8 @@ use cad::{Foot, Model};
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::run::Units;
+
 /// Name and version of the JSON document.
 pub const SCHEMA: &str = "sagitta-feet-2";
 
@@ -17,6 +19,8 @@ pub struct FeetReport {
     pub schema: &'static str,
     /// Version of the program.
     pub version: &'static str,
+    /// The units of its numbers.
+    pub units: Units,
     /// The CAD.
     pub cad: CadReport,
     /// References that made the group, as given; empty where all of the CAD is meant.
@@ -103,6 +107,7 @@ impl FeetReport {
         let mut report = FeetReport {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
+            units: Units::with_length((cad.scale == 1.0).then(|| cad.unit.clone())),
             cad,
             group: group.to_vec(),
             entities,

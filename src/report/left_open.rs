@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use rustc_hash::FxHashMap;
 
-use super::build::distance;
+use super::distance::distance;
 use crate::associate::OpenFace;
 use crate::curve::Curved;
 use crate::element::Order;
@@ -29,8 +29,8 @@ struct LeftOpen {
 /// # Errors
 /// [`Inconsistent`]: too many.
 pub fn left_open(curved: &Curved) -> Result<(Mesh, Vec<Field>), Inconsistent> {
-    let off =
-        curved.off_cad.iter().map(|off| LeftOpen { face: off.face, cause: OFF, distance: distance(curved, off.face) });
+    let far = |face: usize| distance(curved, face).map(|own| own.max);
+    let off = curved.off_cad.iter().map(|off| LeftOpen { face: off.face, cause: OFF, distance: far(off.face) });
     drawn(&curved.mesh, &curved.boundary, off.chain(open(&curved.open_faces)).collect())
 }
 

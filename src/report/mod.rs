@@ -23,6 +23,10 @@ pub mod check;
 #[cfg(feature = "cad")]
 pub mod curve;
 #[cfg(feature = "cad")]
+mod curved_fields;
+#[cfg(feature = "cad")]
+mod distance;
+#[cfg(feature = "cad")]
 pub mod feet;
 mod fields;
 #[cfg(feature = "cad")]
@@ -40,14 +44,15 @@ use serde::Serialize;
 pub use check::CheckReport;
 pub use fields::measure_fields;
 pub use measures::{Histogram, LowElement, MeasureReport, Percentile};
-pub use run::Run;
+pub use run::{Run, Told, Units};
 pub use schema::schemas;
 #[cfg(feature = "cad")]
 pub use {
-    build::{distance, face_distances, measures, report, sweeps},
+    build::{measures, report, sweeps},
     curve::Report,
+    curved_fields::fields,
+    distance::{Distance, distance, face_distances},
     feet::{CadReport, FeetReport, end_of},
-    fields::fields,
     groups::Groups,
     left_open::{left_open, undecided},
 };

@@ -1,25 +1,65 @@
-//! The run that a document is of: when, and by which command.
+//! The run that a document is of: when, by which command and options, and how it ended.
 
+use std::collections::BTreeMap;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// When a document was made, and by which command.
+/// When a document was made, by which command, and how that ended.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Run {
     /// When it ended: year, month, day, hour, minute and second of UTC, as `2026-12-01T13:05:59Z`.
     pub date: String,
     /// The program and its arguments as they were given; empty where no program was run.
     pub command: Vec<String>,
+    /// Every option and argument of the command by its name, with the values that it had, given or by default; those that had none are left
+    /// out.
+    pub options: BTreeMap<String, Vec<String>>,
+    /// The exit code that the result is worth, which is that of the program unless something beside the result could not be written; nothing
+    /// where no program was run.
+    pub exit_code: Option<u8>,
+    /// What that code means.
+    pub reason: Option<String>,
 }
 
 impl Run {
-    /// A run that ends now.
+    /// A run of no program that ends now.
     #[must_use]
-    pub fn ending_now(command: Vec<String>) -> Run {
+    pub fn ending_now() -> Run {
         let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
-        Run { date: date(seconds), command }
+        Run { date: date(seconds), command: Vec::new(), options: BTreeMap::new(), exit_code: None, reason: None }
+    }
+}
+
+/// A document with the run that it is of.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Told<T> {
+    /// The document.
+    #[serde(flatten)]
+    pub document: T,
+    /// When it was made, by which command, and how that ended.
+    pub run: Run,
+}
+
+/// The units of the numbers of a document.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Units {
+    /// Of lengths and coordinates, as the CAD file names it; nothing where that is not known.
+    pub length: Option<String>,
+    /// Of angles.
+    pub angle: &'static str,
+    /// Of times.
+    pub time: &'static str,
+    /// Of memory.
+    pub memory: &'static str,
+}
+
+impl Units {
+    /// With this unit of lengths.
+    #[must_use]
+    pub fn with_length(length: Option<String>) -> Units {
+        Units { length, angle: "degree", time: "second", memory: "byte" }
     }
 }
 

@@ -3,6 +3,8 @@
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
 
+#[cfg(feature = "cad")]
+use super::Told;
 use super::{CheckReport, check};
 #[cfg(feature = "cad")]
 use super::{FeetReport, Groups, Report, curve, feet, groups};
@@ -17,13 +19,13 @@ pub fn schemas() -> Vec<(&'static str, Schema)> {
         #[cfg(feature = "cad")]
         of::<Report>(curve::SCHEMA),
         #[cfg(feature = "cad")]
-        of::<FeetReport>(feet::SCHEMA),
+        of::<Told<FeetReport>>(feet::SCHEMA),
         #[cfg(feature = "cad")]
         of::<Groups>(groups::SCHEMA),
         #[cfg(feature = "cad")]
-        of::<associate::Summary>(associate::SUMMARY_SCHEMA),
+        of::<Told<associate::Summary>>(associate::SUMMARY_SCHEMA),
         #[cfg(feature = "cad")]
-        of::<validate::Validation>(validate::SCHEMA),
+        of::<Told<validate::Validation>>(validate::SCHEMA),
     ]
 }
 

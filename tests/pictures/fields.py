@@ -1,6 +1,7 @@
-"""The least and largest value of every array of a VTU file over its cells of the highest dimension, as VTK reads them, as one JSON document.
+"""What VTK and Gmsh read of files with fields, as one JSON document: the least and largest value of every array, whether all are finite, and of
+a cut through the middle those of every point array.
 
-    fields.py FILE.vtu
+    fields.py FILE...      .vtu, .vtm, .vtkhdf or .msh
 """
 
 import json
@@ -9,8 +10,47 @@ import sys
 import numpy as np
 import pyvista
 
-grid = pyvista.read(sys.argv[1])
-own = np.asarray(grid.cell_data["dimension"]) == np.max(grid.cell_data["dimension"])
-cells = {name: np.asarray(values)[own] for name, values in grid.cell_data.items()}
-found = {name: [float(values.min()), float(values.max())] for name, values in (cells | dict(grid.point_data)).items()}
-print(json.dumps(found))
+
+def spread(values):
+    values = np.asarray(values)
+    return [float(np.min(values)), float(np.max(values)), bool(np.all(np.isfinite(values)))] if values.size else None
+
+
+def grid(own):
+    top = np.asarray(own.cell_data["dimension"]) == np.max(own.cell_data["dimension"])
+    cut = own.extract_cells(np.flatnonzero(top)).slice(normal="x")
+    return {
+        "cells": {name: spread(np.asarray(values)[top]) for name, values in own.cell_data.items()},
+        "points": {name: spread(values) for name, values in own.point_data.items()},
+        "cut": {name: spread(values) for name, values in cut.point_data.items()} if cut.n_points else {},
+        "names": {name: np.asarray(values).tolist() for name, values in own.field_data.items()},
+        "count": int(np.sum(top)),
+        "sizes": [float(size) for size in own.extract_cells(np.flatnonzero(top)).bounds],
+    }
+
+
+def views(path):
+    import gmsh
+
+    gmsh.initialize()
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.open(path)
+    found = {}
+    for tag in gmsh.view.getTags():
+        kind, tags, data, _, _ = gmsh.view.getModelData(tag, 0)
+        name = gmsh.view.option.getString(tag, "Name")
+        found[name] = {"kind": kind, "count": len(tags), "spread": spread(np.concatenate(data))}
+    gmsh.finalize()
+    return found
+
+
+def of(path):
+    if path.endswith(".msh"):
+        return views(path)
+    own = pyvista.read(path)
+    if isinstance(own, pyvista.MultiBlock):
+        return {own.get_block_name(n): grid(own[n]) for n in range(own.n_blocks)}
+    return grid(own)
+
+
+print(json.dumps({path.rsplit("/", 1)[-1]: of(path) for path in sys.argv[1:]}))

@@ -129,7 +129,7 @@ def signals(table, sagitta):
                     command = [sagitta, "curve", mesh, "--cad", cad, "--order", "2", "-o", out]
                     child = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
                     for line in child.stderr:
-                        if f"step {step} of {STEPS}" in line:
+                        if f" {step}/{STEPS} " in line:
                             break
                     child.send_signal(getattr(signal, name))
                     if times == 2:  # a second wish is one that comes a second later

@@ -54,6 +54,7 @@ mod solvers;
 mod sphere_order;
 mod stop;
 mod surface;
+mod terminal;
 mod thin_edges;
 mod unit_and_place;
 mod validate;

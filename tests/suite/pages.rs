@@ -76,6 +76,26 @@ fn a_page_is_made_of_a_report_afterwards() {
     }
 }
 
+/// Pages of `check` and `report` tell how far the boundary is from the CAD, where that is given.
+#[test]
+fn pages_made_with_cad_have_distances_to_it() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = |name: &str| dir.path().join(name);
+    let [curved, report, page] = ["out.msh", "out.json", "out.html"].map(at);
+    let (linear, cad) = (fixture("cylinder_bl", "msh"), fixture("cylinder_bl", "step"));
+    sagitta(args!["curve", linear, "--cad", cad, "--order", "2", "-o", curved, "--report", report]).expect(0);
+    let has = |page: &Path| std::fs::read_to_string(page).unwrap().contains("\"distance to CAD\":\"");
+    for (command, with_cad) in [
+        (args!["report", report, curved, "-o", page].to_vec(), false),
+        (args!["report", report, curved, "-o", page, "--cad", cad].to_vec(), true),
+        (args!["check", linear, "--html", page].to_vec(), false),
+        (args!["check", linear, "--html", page, "--cad", cad].to_vec(), true),
+    ] {
+        sagitta(command).expect(0);
+        assert_eq!(has(&page), with_cad);
+    }
+}
+
 #[test]
 fn what_does_not_belong_together_is_refused() {
     let dir = tempfile::tempdir().unwrap();

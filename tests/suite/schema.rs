@@ -29,7 +29,8 @@ fn published_schemas_are_those_of_the_program() {
 #[test]
 fn schemas_refuse_what_is_wrong() {
     let good = serde_json::json!({
-        "schema": "sagitta-check-2", "version": "0", "run": {"date": "2026-12-01T13:05:59Z", "command": []}, "mesh": "m", "order": 2, "certified": true, "cells": [],
+        "schema": "sagitta-check-2", "version": "0", "run": {"date": "2026-12-01T13:05:59Z", "command": [], "options": {}, "exit_code": 0, "reason": "done"},
+        "units": {"length": null, "angle": "degree", "time": "second", "memory": "byte"}, "mesh": "m", "order": 2, "certified": true, "cells": [],
         "certificate": {
             "j_over_jc": {"lower": null, "upper": null}, "scaled_jacobian": {"lower": 0.5, "upper": 0.5}, "worst": [],
         }, "measures": [], "lowest": [], "notes": [],

@@ -1,11 +1,9 @@
-//! Progress on stderr: a live line on a terminal, plain lines elsewhere; and what ends the smoothing early.
+//! The progress of a curving, and what ends its smoothing early.
 
-use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
-
-use crate::cli::output::message;
+use super::live::Live;
+use super::row::{Row, Sweep};
 use crate::cli::signals;
 use crate::curve::{Deadline, Observer, Step};
 use crate::element::Order;
@@ -32,118 +30,109 @@ impl std::fmt::Display for Stop {
 
 /// Shows how the work goes on, and may end the smoothing on an interrupt or after a time limit.
 pub(super) struct Monitor {
-    deadline: Option<Deadline>,
+    deadline: Deadline,
     /// Why smoothing was ended, once it was.
     pub(super) stop: Option<Stop>,
-    bar: Option<ProgressBar>,
-    quiet: bool,
-    order: Option<Order>,
-    step: Option<Step>,
-    start: Instant,
-    smoothing: Option<Instant>,
+    live: Live,
+    /// The order that is worked at, which it is of how many.
+    order: Option<(Order, usize, usize)>,
+    /// How many orders there are at most.
+    orders: usize,
+    step: Step,
+    pace: Pace,
     last: Option<Instant>,
 }
 
+/// How long a sweep takes in the stage that the smoother is in.
+#[derive(Clone, Copy, Debug)]
+struct Pace {
+    stage: usize,
+    /// When it began, and after how many sweeps.
+    since: Instant,
+    done: usize,
+    /// When the last sweep ended.
+    last: Instant,
+}
+
+impl Pace {
+    /// A step begins.
+    fn new() -> Pace {
+        let now = Instant::now();
+        Pace { stage: 0, since: now, done: 0, last: now }
+    }
+
+    /// A sweep has ended: how long all take that there may still be, by those of its stage.
+    fn left(&mut self, progress: &Progress) -> Duration {
+        let Progress { stage, sweep, max_sweeps, .. } = *progress;
+        if self.stage != stage || sweep <= self.done {
+            *self = Pace { stage, since: self.last, done: sweep.saturating_sub(1), last: self.last };
+        }
+        self.last = Instant::now();
+        let spent = self.last.duration_since(self.since).as_secs_f64();
+        let each = spent / sweep.saturating_sub(self.done).max(1) as f64;
+        Duration::from_secs_f64(each * max_sweeps.saturating_sub(sweep) as f64)
+    }
+}
+
 impl Monitor {
-    /// Begins to count the time.
-    pub(super) fn new(quiet: bool) -> Monitor {
-        let bar = (!quiet && std::io::stderr().is_terminal()).then(spinner);
+    /// Begins to count the time. Smoothing ends after a time limit, where there is one, and that at the first of `orders` orders up to
+    /// `order` after their share of it.
+    pub(super) fn new(quiet: bool, limit: Option<Duration>, order: Order, orders: usize) -> Monitor {
         Monitor {
-            deadline: None,
+            deadline: Deadline::new(limit, order),
             stop: None,
-            bar,
-            quiet,
+            live: Live::new(quiet),
             order: None,
-            step: None,
-            start: Instant::now(),
-            smoothing: None,
+            orders,
+            step: Step::Read,
+            pace: Pace::new(),
             last: None,
         }
     }
 
-    /// Ends smoothing after a time limit, too, and that at orders below `order` after their share of it.
-    pub(super) fn stoppable(self, limit: Option<Duration>, order: Order) -> Monitor {
-        Monitor { deadline: Some(Deadline::new(limit, order)), ..self }
-    }
-
-    /// Takes the live line away.
+    /// Takes the live lines away.
     pub(super) fn finish(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
+        self.live.finish();
     }
 
-    /// Shows what is being done.
-    pub(super) fn show(&self, text: String) {
-        match &self.bar {
-            Some(bar) => bar.set_message(text),
-            None if self.quiet => {}
-            None => message(format_args!("[{:7.1} s] {text}", self.start.elapsed().as_secs_f64())),
-        }
+    fn show(&mut self, sweep: Option<Sweep>) {
+        let Monitor { order, step, .. } = *self;
+        self.live.row(&Row { order, step, sweep });
     }
-}
-
-fn spinner() -> ProgressBar {
-    let bar = ProgressBar::new_spinner();
-    if let Ok(style) = ProgressStyle::with_template("{spinner} [{elapsed}] {wide_msg}") {
-        bar.set_style(style);
-    }
-    bar.enable_steady_tick(Duration::from_millis(200));
-    bar
 }
 
 impl Observer for Monitor {
     fn order(&mut self, order: Order) {
-        self.order = Some(order);
-        self.deadline.iter_mut().for_each(|deadline| deadline.order(order));
+        let n = self.order.map_or(1, |(_, n, _)| n + 1).min(self.orders);
+        self.order = Some((order, n, self.orders));
+        self.deadline.order(order);
     }
 
     fn step(&mut self, step: Step) {
         if step >= Step::Elevate {
             signals::heed(); // from here on there will be a mesh to keep
         }
-        if step == Step::Smooth {
-            self.smoothing = Some(Instant::now());
-        }
-        self.step = Some(step);
-        self.deadline.iter_mut().for_each(|deadline| deadline.step(step));
-        let order = self.order.map_or(String::new(), |order| format!(", {order}"));
-        if step == Step::Recover {
-            return self.show(format!("{}{order}", step.name()));
-        }
-        self.show(format!("step {} of {}: {}{order}", step as usize + 1, Step::ALL.len(), step.name()));
+        self.step = step;
+        self.pace = Pace::new();
+        self.deadline.step(step);
+        self.show(None);
     }
 
     fn progress(&mut self, progress: &Progress) -> bool {
-        let due = self.bar.is_some() || self.last.is_none_or(|last| last.elapsed() >= INTERVAL);
+        let left = self.pace.left(progress);
+        let due = self.live.is_redrawn() || self.last.is_none_or(|last| last.elapsed() >= INTERVAL);
         if due {
             self.last = Some(Instant::now());
-            let spent = self.smoothing.map_or(0.0, |start| start.elapsed().as_secs_f64());
-            let left = spent / progress.sweep.max(1) as f64 * (progress.max_sweeps - progress.sweep) as f64;
-            self.show(format!(
-                "{}{}: stage {}, sweep {} of at most {}, {} active nodes, worst cost {:.4} near ({:.4}, {:.4}, {:.4}), \
-                 {} inverted, at most {left:.0} s left",
-                self.step.map_or("smooth", Step::name),
-                self.order.map_or(String::new(), |order| format!(" {order}")),
-                progress.stage,
-                progress.sweep,
-                progress.max_sweeps,
-                progress.active_nodes,
-                progress.worst,
-                progress.at.x,
-                progress.at.y,
-                progress.at.z,
-                progress.inverted
-            ));
+            self.show(Some(Sweep::new(progress, left)));
         }
-        let over = self.deadline.as_ref().filter(|deadline| deadline.is_over(progress.inverted));
-        let over = over.and_then(|deadline| deadline.limit).map(Stop::TimeLimit);
+        let over = self.deadline.is_over(progress.inverted);
+        let over = self.deadline.limit.filter(|_| over).map(Stop::TimeLimit);
         let stop = if signals::wished() { Some(Stop::Interrupted) } else { over };
         self.stop = stop.or(self.stop);
         stop.is_none()
     }
 
     fn may_recover(&mut self) -> bool {
-        !signals::wished() && self.deadline.as_ref().is_none_or(Deadline::leaves_time)
+        !signals::wished() && self.deadline.leaves_time()
     }
 }

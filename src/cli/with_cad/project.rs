@@ -9,17 +9,19 @@ use cad::{Aabb, Foot, Group, Model};
 use clap::Args;
 use glam::DVec3;
 
+use super::live::Live;
 use super::points;
-use super::progress::{INTERVAL, Monitor};
+use super::progress::INTERVAL;
 use super::reading::in_a_child;
 use super::values::{factor, seconds};
 use crate::cli::exit::{DONE, NOT_CERTIFIED};
 use crate::cli::files::Files;
+use crate::cli::help::{INPUT, OUTPUT, RUN};
 use crate::cli::input::memory;
 use crate::cli::output::{Beside, Failure, message, print, write_json};
-use crate::cli::{signals, threads};
+use crate::cli::{signals, threads, told};
 use crate::formats;
-use crate::report::{CadReport, FeetReport};
+use crate::report::{CadReport, FeetReport, Told};
 
 /// Points that are projected between two looks at the clock.
 const CHUNK: usize = 1 << 14;
@@ -32,25 +34,25 @@ pub(in crate::cli) struct Options {
     /// CSV file with columns x, y, z; `-` for stdin
     points: PathBuf,
     /// The CAD entities to project onto, as `sagitta groups` lists them [default: all faces and free edges]
-    #[arg(long, value_name = "REF,...")]
+    #[arg(long, value_name = "REF,...", help_heading = INPUT)]
     group: Vec<String>,
     /// CSV file for the feet; `-` for stdout
-    #[arg(short, long, value_name = "FEET.csv", default_value = "-")]
+    #[arg(short, long, value_name = "FEET.csv", default_value = "-", help_heading = OUTPUT)]
     output: PathBuf,
     /// Also write the counts as JSON
-    #[arg(long, value_name = "R.json")]
+    #[arg(long, value_name = "R.json", help_heading = OUTPUT)]
     report: Option<PathBuf>,
     /// Multiply the CAD's coordinates by this factor
-    #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = factor)]
+    #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = factor, help_heading = INPUT)]
     cad_scale: f64,
     /// Threads to use [default: all cores]
-    #[arg(long, value_name = "N", value_parser = threads::number)]
+    #[arg(long, value_name = "N", value_parser = threads::number, help_heading = RUN)]
     pub(super) threads: Option<NonZeroUsize>,
     /// Seconds after which reading the CAD is abandoned
-    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = seconds)]
+    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = seconds, help_heading = INPUT)]
     cad_timeout: f64,
     /// No progress on stderr
-    #[arg(short, long)]
+    #[arg(short, long, help_heading = RUN)]
     quiet: bool,
 }
 
@@ -63,9 +65,9 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
         .writes("--output", (!streamed).then_some(&options.output))
         .writes("--report", options.report.as_ref())
         .check()?;
-    let monitor = Monitor::new(options.quiet);
-    let outcome = project(options, &monitor);
-    monitor.finish();
+    let live = Live::new(options.quiet);
+    let outcome = project(options, &live);
+    live.finish();
     let (feet, report) = outcome?;
     let code = if report.unproven == 0 { DONE } else { NOT_CERTIFIED };
     let mut text = Vec::new();
@@ -78,7 +80,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
         formats::write_bytes(&options.output, &text)?;
     }
     if let Some(path) = &options.report {
-        beside.tell(write_json(path, &report));
+        beside.tell(write_json(path, &Told { document: &report, run: told::run(code) }));
     }
     match (streamed, options.quiet) {
         (false, _) => beside.tell(print(&format!("{report}\nwritten: {}", options.output.display()))),
@@ -88,16 +90,16 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     Ok(beside.exit_code(code))
 }
 
-fn project(options: &Options, monitor: &Monitor) -> Result<(Vec<Option<Foot>>, FeetReport), Failure> {
-    monitor.show("reading the points".to_owned());
+fn project(options: &Options, live: &Live) -> Result<(Vec<Option<Foot>>, FeetReport), Failure> {
+    live.text("reading the points".to_owned());
     let xs = read_points(&options.points)?;
-    monitor.show(format!("{} points; reading the CAD", xs.len()));
+    live.text(format!("{} points; reading the CAD", xs.len()));
     let model = Model::read(&options.cad, &in_a_child(options.cad_timeout, options.cad_scale))?;
     let references: Vec<String> = options.group.iter().flat_map(|list| split(list)).map(str::to_owned).collect();
     let entities = model.select(&references)?;
     let group = Group::of(&model, &entities).map_err(|error| format!("{}: {error}", options.cad.display()))?;
     let start = Instant::now();
-    let feet = closest(&group, &xs, monitor);
+    let feet = closest(&group, &xs, live);
     let seconds = start.elapsed().as_secs_f64();
     let cad = CadReport::new(&model, options.cad_scale);
     let mut report = FeetReport::new(cad, &references, entities.len(), &feet, seconds);
@@ -132,16 +134,16 @@ fn read_points(path: &Path) -> Result<Vec<DVec3>, Failure> {
 }
 
 /// The feet, chunk by chunk, so that progress can be shown.
-fn closest(group: &Group, xs: &[DVec3], monitor: &Monitor) -> Vec<Option<Foot>> {
+fn closest(group: &Group, xs: &[DVec3], live: &Live) -> Vec<Option<Foot>> {
     let mut feet = Vec::with_capacity(xs.len());
     let (start, mut last) = (Instant::now(), Instant::now());
-    monitor.show(format!("projecting {} points", xs.len()));
+    live.text(format!("projecting {} points", xs.len()));
     for chunk in xs.chunks(CHUNK) {
         feet.extend(group.closest_batch(chunk, &mut []));
         if last.elapsed() >= INTERVAL {
             last = Instant::now();
             let left = start.elapsed().as_secs_f64() / feet.len() as f64 * (xs.len() - feet.len()) as f64;
-            monitor.show(format!("{} of {} points projected, {left:.0} s left", feet.len(), xs.len()));
+            live.text(format!("{} of {} points projected, {left:.0} s left", feet.len(), xs.len()));
         }
     }
     feet

@@ -7,16 +7,17 @@ use cad::{ReadOptions, Reader};
 use clap::Args;
 
 use super::values::{factor, seconds};
+use crate::cli::help::INPUT;
 use crate::cli::input::memory;
 
 /// Options of reading CAD.
 #[derive(Args)]
 pub(super) struct Reading {
     /// Multiply the CAD's coordinates by this factor; `auto` finds the ratio of units that fits
-    #[arg(long, value_name = "F|auto", default_value = "1", value_parser = scale)]
+    #[arg(long, value_name = "F|auto", default_value = "1", value_parser = scale, help_heading = INPUT)]
     cad_scale: Scale,
     /// Seconds after which reading the CAD is abandoned
-    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = seconds)]
+    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = seconds, help_heading = INPUT, hide_short_help = true)]
     cad_timeout: f64,
 }
 

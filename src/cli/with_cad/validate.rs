@@ -7,7 +7,10 @@ use clap::Args;
 use super::reading::Reading;
 use super::values::positive;
 use crate::cli::exit::{DONE, FINDINGS};
+use crate::cli::help::{INPUT, OUTPUT};
 use crate::cli::output::{Failure, print};
+use crate::cli::told;
+use crate::report::Told;
 use crate::validate::{self, Job};
 
 /// Options of `sagitta validate`.
@@ -16,21 +19,21 @@ pub(in crate::cli) struct Options {
     /// The MeshLink file
     linkage: PathBuf,
     /// The linear mesh that it was written for
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help_heading = INPUT)]
     mesh: Option<PathBuf>,
     /// The CAD that it was written for: STEP, IGES or BREP
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help_heading = INPUT)]
     cad: Option<PathBuf>,
     /// How far a linked point may be from its CAD entity [default: 1e-5 of the mesh's bounding-box diagonal]
-    #[arg(long, value_name = "T", value_parser = positive)]
+    #[arg(long, value_name = "T", value_parser = positive, help_heading = INPUT)]
     tolerance: Option<f64>,
     #[command(flatten)]
     reading: Reading,
     /// Print the findings as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = OUTPUT)]
     json: bool,
     /// Count notes as findings
-    #[arg(long)]
+    #[arg(long, help_heading = OUTPUT)]
     strict: bool,
 }
 
@@ -45,10 +48,11 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
         reading: options.reading.options(),
         mesh_reading: crate::cli::input::reading(),
     })?;
+    let code = if validation.is_clean(options.strict) { DONE } else { FINDINGS };
     if options.json {
-        print(&serde_json::to_string_pretty(&validation)?)?;
+        print(&serde_json::to_string_pretty(&Told { document: &validation, run: told::run(code) })?)?;
     } else {
         print(&validation.to_string())?;
     }
-    Ok(if validation.is_clean(options.strict) { DONE } else { FINDINGS })
+    Ok(code)
 }

@@ -15,6 +15,7 @@ mod read41;
 mod sink;
 mod source;
 mod type_code;
+mod views;
 mod write22;
 mod write41;
 
@@ -32,6 +33,7 @@ use super::detect::{Head, Verdict};
 use super::error::{Fault, Flaw};
 use super::format::{Format, Holds, Reader, Writer};
 use super::loss::Loss;
+use super::options::WriteOptions;
 use super::part::Unwritten;
 use super::scanner::Scanner;
 use crate::element::{Cell, Order};
@@ -50,10 +52,10 @@ pub(super) static FORMAT: Format = Format {
         read: |input, _| read(input.content, input.length).map_err(|flaw| flaw.of(input.path)),
     }),
     writer: Some(Writer {
-        holds: Holds { notes: "4.1, `--msh-version 2.2`, `--ascii`", ..HOLDS },
+        holds: Holds { notes: "4.1, `--msh-version 2.2`, `--ascii`; fields as views by `curve --msh-views`", ..HOLDS },
         loses: &[Loss::Conditions, Loss::Zones],
         held: None,
-        write: |part, mesh, options| part.stream(|out| write(out, mesh, options.msh_version, options.msh_encoding)),
+        write: |part, mesh, options| part.stream(|out| write(out, mesh, options)),
     }),
 };
 
@@ -224,10 +226,10 @@ fn end_section(scanner: &mut Scanner<impl BufRead>, section: &'static str) -> Re
     Err(scanner.flaw(MshFault::SectionEnd { section: section.into(), found }))
 }
 
-/// Writes a mesh. Equal meshes make equal bytes.
-fn write(out: &mut (impl Write + Send), mesh: &Mesh, version: Version, encoding: Encoding) -> Result<(), Unwritten> {
-    let binary = encoding == Encoding::Binary;
-    write!(out, "$MeshFormat\n{} {} 8\n", version.name(), u8::from(binary))?;
+/// Writes a mesh, and fields as views. Equal meshes make equal bytes.
+fn write(out: &mut (impl Write + Send), mesh: &Mesh, options: &WriteOptions<'_>) -> Result<(), Unwritten> {
+    let binary = options.msh_encoding == Encoding::Binary;
+    write!(out, "$MeshFormat\n{} {} 8\n", options.msh_version.name(), u8::from(binary))?;
     if binary {
         out.write_all(&1_i32.to_le_bytes())?;
         out.write_all(b"\n")?;
@@ -235,15 +237,16 @@ fn write(out: &mut (impl Write + Send), mesh: &Mesh, version: Version, encoding:
     out.write_all(b"$EndMeshFormat\n")?;
     names::write(out, mesh.physical_names())?;
     if binary {
-        write_sections(&mut ByteSink(out), mesh, version)
+        write_sections(&mut ByteSink(out), mesh, options)
     } else {
-        write_sections(&mut TextSink::new(out), mesh, version)
+        write_sections(&mut TextSink::new(out), mesh, options)
     }
 }
 
-fn write_sections(sink: &mut impl Sink, mesh: &Mesh, version: Version) -> Result<(), Unwritten> {
-    match version {
+fn write_sections(sink: &mut impl Sink, mesh: &Mesh, options: &WriteOptions<'_>) -> Result<(), Unwritten> {
+    match options.msh_version {
         Version::V4_1 => write41::write(sink, mesh),
         Version::V2_2 => write22::write(sink, mesh),
-    }
+    }?;
+    views::write(sink, mesh, options.fields)
 }

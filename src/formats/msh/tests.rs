@@ -22,6 +22,10 @@ fn with(from: &str, to: &str) -> String {
     whole.replacen(from, to, 1)
 }
 
+fn form(msh_version: Version, msh_encoding: Encoding) -> WriteOptions<'static> {
+    WriteOptions { msh_version, msh_encoding, ..WriteOptions::default() }
+}
+
 #[test]
 fn sparse_numbers_unknown_sections_and_odd_spacing_are_read() {
     let whole = [HEAD, NODES, ELEMENTS].concat();
@@ -185,7 +189,7 @@ fn names_that_are_no_utf8_are_latin1() {
 fn binary_that_was_cut_off_is_told_at_every_length() {
     let mesh = parse([HEAD, NODES, ELEMENTS].concat().as_bytes()).unwrap();
     let mut whole = Vec::new();
-    write(&mut whole, &mesh, Version::V4_1, Encoding::Binary).unwrap();
+    write(&mut whole, &mesh, &form(Version::V4_1, Encoding::Binary)).unwrap();
     assert_eq!(parse(&whole).unwrap().points(), mesh.points());
     for length in 0..whole.len() - 1 {
         assert!(parse(&whole[..length]).is_err(), "cut to {length} of {}", whole.len());
@@ -231,7 +235,7 @@ fn both_byte_orders_are_read() {
     let mesh = parse([HEAD, NODES, ELEMENTS].concat().as_bytes()).unwrap();
     for (version, number) in [(Version::V4_1, "4.1"), (Version::V2_2, "2.2")] {
         let mut bytes = format!("$MeshFormat\n{number} 1 8\n\0\0\0\x01\n$EndMeshFormat\n").into_bytes();
-        write_sections(&mut BigEndian(&mut bytes), &mesh, version).unwrap();
+        write_sections(&mut BigEndian(&mut bytes), &mesh, &form(version, Encoding::Binary)).unwrap();
         let again = parse(&bytes).unwrap();
         assert_eq!((again.points(), again.node_tags()), (mesh.points(), mesh.node_tags()), "{number}");
         assert_eq!(
@@ -254,7 +258,7 @@ fn an_element_in_several_groups_is_one_element() {
         assert_eq!((&mesh.blocks()[0].physical_tags[..], &mesh.blocks()[0].tags[..]), (&[8, 9][..], &[1, 3][..]));
         for version in [Version::V4_1, Version::V2_2] {
             let mut out = Vec::new();
-            write(&mut out, &mesh, version, Encoding::Ascii).unwrap();
+            write(&mut out, &mesh, &form(version, Encoding::Ascii)).unwrap();
             let again = parse(&out).unwrap();
             assert_eq!(
                 (&again.blocks()[0].nodes, &again.blocks()[0].tags),
@@ -274,7 +278,7 @@ fn elements_of_one_entity_in_different_groups_get_entities_of_their_own() {
     let elements = "$Elements\n3\n1 2 2 8 5 1 2 3\n2 2 2 9 5 2 4 3\n3 1 2 0 0 1 2\n$EndElements\n";
     let mesh = parse([OLD, elements].concat().as_bytes()).unwrap();
     let mut out = Vec::new();
-    write(&mut out, &mesh, Version::V4_1, Encoding::Ascii).unwrap();
+    write(&mut out, &mesh, &form(Version::V4_1, Encoding::Ascii)).unwrap();
     let again = parse(&out).unwrap();
     let entities: Vec<_> = again.entities().iter().map(|e| (e.key, &e.physical_tags[..])).collect();
     let key = EntityKey::new;
@@ -300,7 +304,7 @@ fn high_order_nodes_in_any_order_make_one_block_an_entity() {
     }
     let mesh = Mesh::new(parts).unwrap();
     let mut out = Vec::new();
-    write(&mut out, &mesh, Version::V4_1, Encoding::Ascii).unwrap();
+    write(&mut out, &mesh, &form(Version::V4_1, Encoding::Ascii)).unwrap();
     let again = parse(&out).unwrap();
     assert_eq!(again.node_tags(), [1, 2, 3, 5, 4, 6]);
     assert!(String::from_utf8(out).unwrap().contains("\n$Nodes\n4 6 1 6\n"));
@@ -311,6 +315,6 @@ fn version_2_2_refuses_numbers_beyond_its_own() {
     let mut parts = parse([HEAD, NODES, ELEMENTS].concat().as_bytes()).unwrap().into_parts();
     parts.node_tags[0] = 1 << 31;
     let mesh = Mesh::new(parts).unwrap();
-    let refused = write(&mut Vec::new(), &mesh, Version::V2_2, Encoding::Binary);
+    let refused = write(&mut Vec::new(), &mesh, &form(Version::V2_2, Encoding::Binary));
     assert!(matches!(refused, Err(Unwritten::Inexpressible(reason)) if reason.contains("write version 4.1")));
 }

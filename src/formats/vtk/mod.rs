@@ -1,16 +1,22 @@
 //! VTK: XML unstructured grids (VTU) read and written, legacy files read.
 
 mod array;
+mod collection;
 mod compressed;
 mod encoded;
 mod fault;
 mod grid;
+#[cfg(feature = "cgns")]
+mod hdf;
 mod header;
 mod legacy;
 pub(super) mod node_order;
 pub(super) mod type_code;
 mod write;
+mod written;
 mod xml;
+
+use std::io::Write as _;
 
 use super::detect::{Head, Refusal, Verdict};
 use super::format::{Format, Holds, Reader, Writer};
@@ -39,9 +45,46 @@ pub(super) static VTU: Format = Format {
                     P2 on as degenerate hexes",
             ..HOLDS
         },
-        loses: &[Loss::NodeNumbers, Loss::Names, Loss::Periodic, Loss::Conditions, Loss::Parameters, Loss::Zones],
+        loses: LOSES,
         held: None,
         write: |part, mesh, options| part.stream(|out| write::write(out, mesh, options.fields, options.volume_only)),
+    }),
+};
+
+/// VTK's XML form of several grids in one: the cells and each patch by themselves.
+pub(super) static VTM: Format = Format {
+    name: "VTM",
+    endings: &["vtm"],
+    detect: |_| Verdict::No,
+    reader: None,
+    writer: Some(Writer {
+        holds: Holds {
+            fields: true,
+            notes: "a VTU file for the cells and one a patch, in a folder beside that has its name; each with the fields that \
+                    have values there",
+            ..HOLDS
+        },
+        loses: LOSES,
+        held: None,
+        write: |part, mesh, options| {
+            let text = collection::write(part.name(), mesh, options.fields)?;
+            part.stream(|out| Ok(out.write_all(text.as_bytes())?))
+        },
+    }),
+};
+
+/// VTK's form on HDF5.
+#[cfg(feature = "cgns")]
+pub(super) static HDF: Format = Format {
+    name: "VTKHDF",
+    endings: &["vtkhdf"],
+    detect: |_| Verdict::No,
+    reader: None,
+    writer: Some(Writer {
+        holds: Holds { fields: true, notes: "as VTU, for large meshes; layout 1.0, VTK 9.1 and later", ..HOLDS },
+        loses: LOSES,
+        held: None,
+        write: |part, mesh, options| hdf::write(part.path(), mesh, options.fields, options.volume_only),
     }),
 };
 
@@ -56,6 +99,9 @@ pub(super) static LEGACY: Format = Format {
     }),
     writer: None,
 };
+
+const LOSES: &[Loss] =
+    &[Loss::NodeNumbers, Loss::Names, Loss::Periodic, Loss::Conditions, Loss::Parameters, Loss::Zones];
 
 const HOLDS: Holds =
     Holds { highest: Order::MAX, cells: &Cell::ALL, dimensions: &[2, 3], names: false, fields: false, notes: "" };

@@ -2,25 +2,24 @@
 
 use std::fmt::{self, Display};
 
-use super::{LISTED, patch, position};
+use super::{LISTED, patch, patch_row, position};
 use crate::associate::Summary;
 
 impl Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "association by {}", self.source)?;
         let [faces, on] = if self.in_plane { ["edges", "CAD edges"] } else { ["faces", "CAD faces"] };
-        let [name, undecided, off, distance] = ["patch", "undecided", "off the CAD", "CAD distance"];
-        writeln!(f, "{name:<24}{faces:>9}{undecided:>11}{off:>13}{distance:>14}  {on}")?;
+        let [name, undecided, off, distance] = ["patch", "undecided", "off CAD", "distance"];
+        writeln!(f, "{name:<24}{faces:>9}{undecided:>11}{off:>9}{distance:>11}  {on}")?;
         for p in &self.patches {
             let on: Vec<String> = p.cad_faces.iter().map(|(target, count)| format!("{target} ({count})")).collect();
-            let on = if on.is_empty() { "none".to_owned() } else { on.join("; ") };
-            let (name, distance) = (patch(&p.names, &p.entity), p.cad_distance_max);
-            writeln!(f, "{name:<24}{:>9}{:>11}{:>13}{distance:>14.2e}  {on}", p.faces, p.undecided, p.off_cad)?;
+            let figures = format!("{:>9}{:>11}{:>9}{:>11.2e}", p.faces, p.undecided, p.off_cad, p.cad_distance_max);
+            patch_row(&patch(&p.names, &p.entity), &figures, &on, f)?;
         }
         write!(f, "{} mesh edges on CAD edges, {} nodes at CAD vertices", self.edges, self.points)?;
         for item in self.undecided.iter().take(LISTED) {
             let (kind, nodes, at, reason) = (item.kind, &item.nodes, position(item.position), &item.reason);
-            write!(f, "\nundecided: {kind} with nodes {nodes:?} near {at}: {reason}")?;
+            write!(f, "\nundecided: {kind} with nodes {nodes:?} near {at}\n  {reason}")?;
         }
         let more = self.undecided.len().saturating_sub(LISTED);
         if more > 0 {
@@ -42,7 +41,7 @@ impl Summary {
         for spot in self.spots.iter().take(LISTED) {
             let (kind, element, at, cad) = (spot.kind, &spot.element, position(spot.position), &spot.cad);
             let node = spot.node.map_or_else(String::new, |node| format!(" at node {node}"));
-            write!(f, "\n  {kind}: {element}{node} near {at}, on {cad}: ")?;
+            write!(f, "\n  {kind}: {element}{node} near {at}\n    on {cad}: ")?;
             match (spot.q, spot.bend, spot.squeeze) {
                 (Some(q), Some(bend), _) => write!(f, "q {q:.3}, h/R {bend:.2}")?,
                 (.., Some(squeeze)) => write!(f, "s {squeeze:.2}")?,

@@ -17,23 +17,57 @@ use super::certificate::CertificateReport;
 /// Items of a list that are printed; the JSON document has all.
 const LISTED: usize = 10;
 
-/// The last lines: what is proven of the elements.
+/// Columns that tables have at most.
+#[cfg(feature = "cad")]
+const WIDTH: usize = 80;
+
+/// The first lines: what is proven of the elements, and which is the worst.
 fn certificate(certificate: &CertificateReport, certified: bool, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let bounds = certificate.j_over_jc;
+    let (lower, upper) = (number(bounds.lower), number(bounds.upper));
     if certified {
-        if let Some(weakest) = certificate.worst.first() {
-            let (cell, number, at) = (weakest.cell, weakest.element, position(weakest.position));
-            writeln!(f, "weakest element: {cell} {number} near {at}")?;
-        }
-        let bounds = certificate.j_over_jc;
-        let (lower, upper) = (number(bounds.lower), number(bounds.upper));
-        return write!(f, "certified: every element valid, J/Jc >= {lower} everywhere (attained: {upper})");
+        writeln!(f, "certified: every element valid, J/Jc >= {lower} everywhere (attained: {upper})")?;
+        let Some(weakest) = certificate.worst.first() else { return Ok(()) };
+        let (cell, number, at) = (weakest.cell, weakest.element, position(weakest.position));
+        return writeln!(f, "worst element: {cell} {number} near {at}");
     }
-    write!(f, "NOT certified: {} elements are not proven valid", certificate.failures().count())?;
+    writeln!(f, "NOT certified: {} elements are not proven valid", certificate.failures().count())?;
     for element in certificate.failures().take(LISTED) {
         let (verdict, cell, number) = (element.verdict.name(), element.cell, element.element);
-        write!(f, "\n  {verdict} {cell} {number} near {}", position(element.position))?;
+        writeln!(f, "  {verdict} {cell} {number} near {}", position(element.position))?;
     }
-    Ok(())
+    more(certificate.failures().count(), f)
+}
+
+/// How many of a list are not printed.
+fn more(count: usize, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let more = count.saturating_sub(LISTED);
+    if more == 0 { Ok(()) } else { writeln!(f, "  {more} more (--report lists them)") }
+}
+
+/// A row of a table of patches: name, figures, and what of the CAD it lies on. What does not fit into the line stands below.
+#[cfg(feature = "cad")]
+fn patch_row(name: &str, figures: &str, on: &[String], f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    const NAME: usize = 24;
+    let line =
+        if name.len() < NAME { format!("{name:<NAME$}{figures}") } else { format!("{name}\n{:NAME$}{figures}", "") };
+    let whole = on.join("; ");
+    if on.is_empty() {
+        return writeln!(f, "{line}  none");
+    }
+    if NAME + figures.len() + 2 + whole.len() <= WIDTH {
+        return writeln!(f, "{line}  {whole}");
+    }
+    let mut listed = format!("    on {}", on[0]);
+    for (n, item) in on.iter().enumerate().skip(1) {
+        let rest = format!(" and {} more (--report lists them)", on.len() - n);
+        if listed.len() + 2 + item.len() + rest.len() > WIDTH {
+            listed += &rest;
+            break;
+        }
+        listed += &format!("; {item}");
+    }
+    writeln!(f, "{line}\n{listed}")
 }
 
 /// A number of four decimals, or a dash.

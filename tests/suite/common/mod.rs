@@ -61,6 +61,11 @@ pub fn sagitta<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Outco
     Outcome { code: output.status.code(), stdout, stderr: String::from_utf8(output.stderr).expect("stderr is UTF-8") }
 }
 
+/// Whether a line of progress tells of a sweep at this order: `P2 1/2  6/7 smooth  21/200 ...`.
+pub fn is_sweep(line: &str, order: &str) -> bool {
+    line.starts_with(&format!("{order} ")) && line.contains(" smooth ") && line.split_whitespace().count() > 6
+}
+
 /// A number in a JSON document, by JSON pointer.
 #[track_caller]
 pub fn number(document: &Value, pointer: &str) -> f64 {
