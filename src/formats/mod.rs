@@ -139,10 +139,16 @@ pub fn check_solver(path: &Path, solver: &Solver, mesh: &Mesh, order: Order) -> 
     }
 }
 
-/// The file beside a mesh file that is read with it, where there is one.
+/// The files that are read with a mesh file: beside it, or in the folder that it stands for.
 #[must_use]
-pub fn beside(path: &Path) -> Option<PathBuf> {
-    if ugrid::FORMAT.is_name(path) { ugrid::mapbc::beside(path) } else { None }
+pub fn beside(path: &Path) -> Vec<PathBuf> {
+    if ugrid::FORMAT.is_name(path) { ugrid::mapbc::beside(path).into_iter().collect() } else { openfoam::files(path) }
+}
+
+/// The folder that files are written to along with a mesh of this name, where its format has one.
+#[must_use]
+pub fn folder_beside(path: &Path) -> Option<PathBuf> {
+    vtk::VTM.is_name(path).then(|| vtk::folder_of(path))
 }
 
 /// Whether a file of this name would show [`WriteOptions::fields`].

@@ -1,7 +1,8 @@
 //! Release ahead of smoothing: at a corner with `q <= 0`, or in a column of cells that the wall's displacement takes up
 //! ([`super::super::curvability`]), no smoothing makes the elements valid while the wall's nodes are held, and trying bends what is around.
 //!
-//! The D150 aircraft (246 CAD faces, 70 496 prisms, P2) has four such faces: AHEAD_FIGURES.
+//! The wing of nektar at P3 (`q` of -0.126 and -0.016 at two corners) ended with four faces off the CAD after 4 433 sweeps, and ends with two
+//! after 3 126; the coarse ONERA M6 at P3 with `J / J_c` of 0.296, and with 0.351.
 
 use rustc_hash::FxHashSet;
 

@@ -87,7 +87,8 @@ impl Recovery<'_, '_> {
     }
 
     fn draw_nodes(&mut self, nodes: &[usize], draws: usize) {
-        let (least, settings) = self.keeping();
+        let settings = self.calmly();
+        let least = self.smoothed.end.worst().min(ENOUGH).max(self.floor());
         let mut step = DRAW;
         for _ in 0..draws {
             if step < SHORTEST_DRAW || !self.proof.holds() || self.smoothed.stopped {
@@ -105,12 +106,10 @@ impl Recovery<'_, '_> {
         }
     }
 
-    /// Costs good enough beside nodes that are drawn or put back, and settings that smooth up to them: what is no better anywhere is not tried
-    /// again each time.
-    fn keeping(&self) -> (f64, smooth::Settings) {
-        let least = self.smoothed.end.worst().min(ENOUGH).max(self.floor());
+    /// Settings that smooth until the costs beside nodes that are drawn or put back are good enough.
+    fn calmly(&self) -> smooth::Settings {
         let own = &self.level.case.settings.smoothing;
-        (least, smooth::Settings { threshold: least.min(own.threshold), ..self.closer() })
+        smooth::Settings { threshold: ENOUGH.min(own.threshold), ..self.closer() }
     }
 
     /// Released nodes that hang together by wall faces.
@@ -179,7 +178,7 @@ impl Recovery<'_, '_> {
 
     /// Puts released nodes back on the CAD; whether they could stay there.
     fn put_back(&mut self, nodes: &[usize]) -> bool {
-        let (_, settings) = self.keeping();
+        let settings = self.calmly();
         let tried = self.attempt(self.floor(), |recovery| {
             recovery.move_to_cad(nodes, 1.0);
             nodes.iter().for_each(|&n| recovery.level.wall.reattach(n));

@@ -43,6 +43,16 @@ pub(super) fn faces(path: &Path) -> Option<PathBuf> {
     if is_mark { own(&path.parent()?.join("constant/polyMesh")) } else { None }
 }
 
+/// The files of a mesh.
+const FILES: [&str; 5] = ["points", "faces", "owner", "neighbour", "boundary"];
+
+/// The files that are read with one that a case stands for, or that is its file of faces.
+pub(super) fn files(path: &Path) -> Vec<PathBuf> {
+    let own = faces(path).or_else(|| path.ends_with("faces").then(|| path.to_path_buf()));
+    let Some(folder) = own.as_deref().and_then(Path::parent) else { return Vec::new() };
+    FILES.iter().map(|name| folder.join(name)).filter(|file| file != path && file.is_file()).collect()
+}
+
 fn detect(head: &Head) -> Verdict {
     let lines = head.lines();
     if !lines.iter().any(|line| line == "FoamFile") {

@@ -22,6 +22,7 @@ use super::detect::{Head, Refusal, Verdict};
 use super::format::{Format, Holds, Reader, Writer};
 use super::loss::Loss;
 use crate::element::{Cell, Order};
+pub(super) use collection::folder_of;
 
 /// VTK's XML form of unstructured grids.
 pub(super) static VTU: Format = Format {
