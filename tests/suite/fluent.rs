@@ -100,6 +100,7 @@ fn what_is_wrong_is_told_with_its_line() {
     assert!(refused("(10 (1 1 111", "(10 (1 1 112").contains("expected a coordinate, found \")\""));
     assert!(refused("(10 (1 1 111", "(10 (1 2 112").contains("node 1 is told of twice, or not at all"));
     assert!(refused("(10 (1 1 111", "(10 (1 1 ffffffff").contains("do not fit into the"));
+    assert!(refused("(10 (1 1 111", "(10 (1 7fffffff 7fffffff").contains("do not fit into the"));
     assert!(refused("(10 (1 1 111 1 3)", "(2010 (1 1 111 1 3)").contains("section 2010 is binary"));
     assert!(refused("(12 (2 1 126", "(12 (2 1 7fffffff").contains("cells do not fit"));
     assert!(refused("(12 (2 1 126", "(12 (2 1 125").contains("names cell 294, and there are 293"));

@@ -112,7 +112,9 @@ impl<'a> Lexer<'a> {
         let range = usize::try_from(first).ok().zip(usize::try_from(last).ok()).filter(|&(a, b)| 0 < a && a <= b + 1);
         let (a, b) = range.ok_or_else(|| self.flaw(FluentFault::Range { section, first, last }))?;
         let (count, rest) = ((b + 1 - a) as u64, self.rest() as u64);
-        if count.saturating_mul(least as u64) > rest {
+        // Those before the first stand in the file, too.
+        let before = (a as u64 - 1).saturating_mul(least as u64);
+        if count.saturating_mul(least as u64) > rest || before > self.bytes.len() as u64 {
             return Err(self.flaw(Fault::Count { what: "items of a section", count, rest }));
         }
         Ok((a, b))
