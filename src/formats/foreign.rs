@@ -36,11 +36,6 @@ const MESHES: &[Foreign] = &[
         is: |head| matches!(head.bytes, [b'C', b'D', b'F', 1 | 2 | 5, ..]),
     },
     Foreign {
-        name: "a Fluent mesh",
-        remedy: "export the mesh as CGNS",
-        is: |head| matches!(head.text, [b'(', b'0'..=b'9', b' ' | b'0'..=b'9', ..]),
-    },
-    Foreign {
         name: "a Gambit neutral file",
         remedy: "export the mesh as CGNS",
         is: |head| first(head, "CONTROL INFO"),

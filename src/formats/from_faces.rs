@@ -1,5 +1,7 @@
 //! Cells of formats that have faces only, each with the cells on its two sides.
 
+use glam::DVec3;
+
 use crate::element::Cell;
 use crate::mesh::{FaceKey, NodeId};
 
@@ -40,6 +42,35 @@ pub(super) fn cell(faces: &Faces) -> Option<(Cell, Vec<NodeId>)> {
     let of_cell: Vec<FaceKey> = cell.faces().iter().map(|face| key(&corners, face.corners)).collect::<Option<_>>()?;
     let closes = corners.len() == cell.corner_count() && faces.iter().all(|face| of_cell.contains(&FaceKey::new(face)));
     closes.then_some((cell, corners))
+}
+
+/// The triangle or quadrilateral that edges enclose, and its corners in turn.
+pub(super) fn flat(edges: &Faces) -> Option<(Cell, Vec<NodeId>)> {
+    let cell = match edges.len() {
+        3 => Cell::Triangle,
+        4 => Cell::Quad,
+        _ => return None,
+    };
+    let mut corners = vec![*edges[0].first()?];
+    while corners.len() < edges.len() {
+        let last = corners[corners.len() - 1];
+        let mut next = edges.iter().filter(|edge| edge.first() == Some(&last)).map(|edge| edge.last().copied());
+        corners.push(next.next()??);
+        if next.next().is_some() {
+            return None;
+        }
+    }
+    let last = corners[corners.len() - 1];
+    let closes = edges.iter().any(|edge| edge[..] == [last, corners[0]]);
+    let differ = (0..corners.len()).all(|n| !corners[..n].contains(&corners[n]));
+    (closes && differ).then_some((cell, corners))
+}
+
+/// The middle of points, in words.
+pub(super) fn place(points: &[DVec3], nodes: &[NodeId]) -> String {
+    let sum: DVec3 = nodes.iter().map(|node| points[node.index()]).sum();
+    let middle = sum / nodes.len().max(1) as f64;
+    format!("({:.4}, {:.4}, {:.4})", middle.x, middle.y, middle.z)
 }
 
 fn key(corners: &[NodeId], places: &[u8]) -> Option<FaceKey> {

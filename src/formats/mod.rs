@@ -11,6 +11,7 @@ mod crossed;
 mod detect;
 mod error;
 mod field;
+mod fluent;
 mod foreign;
 mod format;
 mod from_faces;

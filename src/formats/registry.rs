@@ -7,7 +7,7 @@ use super::cgns;
 use super::format::{Format, Holds};
 #[cfg(feature = "cgns")]
 use super::hopr;
-use super::{gmf, mfem, msh, nektar, openfoam, plot3d, su2, ugrid, vtk};
+use super::{fluent, gmf, mfem, msh, nektar, openfoam, plot3d, su2, ugrid, vtk};
 use crate::element::Cell;
 
 /// All formats, the most telling marks first.
@@ -28,6 +28,7 @@ pub static REGISTRY: &[&Format] = &[
     &vtk::HDF,
     &vtk::LEGACY,
     &openfoam::FORMAT,
+    &fluent::FORMAT,
     &plot3d::FORMAT,
 ];
 

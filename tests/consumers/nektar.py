@@ -294,7 +294,8 @@ def read_nektar(path):
             raise ValueError(f"{(jacobians.min(1) <= 0).sum()} elements {kind} have a Jacobian that is not positive")
         found["cells"][NAMES[kind]] = len(elements)
         found["volume"] += float((jacobians @ w).sum())
-    domain = {c for d in geometry.find("DOMAIN") for c in numbers(d.text)}
+    listing = geometry.find("DOMAIN")
+    domain = {c for d in [listing, *listing] if d.text and "[" in d.text for c in numbers(d.text)}
     cells = []
     for c in geometry.find("COMPOSITE"):
         letter, own = c.text.strip()[0], numbers(c.text)
@@ -306,7 +307,8 @@ def read_nektar(path):
                     x, w = rule(NAMES[kind])
                     tangents = np.einsum("enc,pnd->epcd", some, slopes(kind, p, x), optimize=True)
                     area += float((np.linalg.norm(np.cross(tangents[..., 0], tangents[..., 1]), axis=-1) @ w).sum())
-            found["areas"][c.get("NAME")], found["faces"][c.get("NAME")] = area, len(own)
+            name = c.get("NAME") or c.get("ID")
+            found["areas"][name], found["faces"][name] = area, len(own)
         elif int(c.get("ID")) in domain:
             if any(listed[n] != letter for n in own):
                 raise ValueError("a composite calls elements by another letter than they have")

@@ -273,8 +273,11 @@ fn what_is_no_mesh_file_is_told() {
     assert!(refused("part.msh", b"ISO-10303-21;\nHEADER;").contains("CAD, not a mesh"));
     assert!(refused("grid.xml", b"<grid/>").contains("an XML file, but not a VTU or Nektar++ mesh"));
     for (name, content, told) in [
-        ("fluent.msh", &b"(0 \"GAMBIT to Fluent File\")\n(2 3)\n"[..], "a Fluent mesh, which is not read; export"),
-        ("deck.nas", b"$ a comment\nBEGIN BULK\nGRID,1,,0.,0.,0.\n", "a Nastran bulk data file, which is not read"),
+        (
+            "deck.nas",
+            &b"$ a comment\nBEGIN BULK\nGRID,1,,0.,0.,0.\n"[..],
+            "a Nastran bulk data file, which is not read",
+        ),
         ("deck.inp", b"** a comment\n*HEADING\n mesh\n", "an Abaqus input file, which is not read"),
         ("grid.vol", b"mesh3d\ndimension\n3\n", "a Netgen mesh, which is not read"),
         ("grid.exo", b"CDF\x01\0\0\0\0", "a netCDF file, as Exodus meshes are, which is not read"),

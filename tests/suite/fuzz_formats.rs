@@ -71,7 +71,8 @@ struct Format {
 }
 
 fn samples(format: &Format) -> Vec<(PathBuf, Vec<u8>)> {
-    let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/samples");
+    let folder = if format.name == "Nektar++" { "fixtures/nektar" } else { "fixtures/samples" };
+    let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     let mut files: Vec<PathBuf> = std::fs::read_dir(dir).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.retain(|file| format.endings.iter().any(|ending| file.to_str().unwrap().ends_with(ending)));
     files.sort();
@@ -79,8 +80,24 @@ fn samples(format: &Format) -> Vec<(PathBuf, Vec<u8>)> {
     if format.name == "PLOT3D" {
         samples.extend(grids());
     }
+    if format.name == "HOPR" {
+        samples.extend(hopr());
+    }
     assert!(samples.len() >= 2, "{}", format.name);
     samples
+}
+
+/// HOPR files of two orders.
+fn hopr() -> Vec<(PathBuf, Vec<u8>)> {
+    let folder = tempfile::tempdir().unwrap();
+    let own = |name: &str| {
+        let mesh =
+            formats::read(&PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("fixtures/samples").join(name)).unwrap();
+        let path = folder.path().join("mesh.h5");
+        formats::write(&path, &mesh, &formats::WriteOptions::default()).unwrap();
+        (PathBuf::from("mesh.h5"), std::fs::read(path).unwrap())
+    };
+    ["hexpyrtet_p1_msh41b.msh", "cylprism_p2_msh41b.msh"].map(own).to_vec()
 }
 
 /// PLOT3D grids of 3 x 3 x 3 points: as text, and in Fortran's records.
@@ -154,14 +171,16 @@ fn damaged_files_are_answered() {
         ("PLOT3D", &[".x"], most),
         ("GMF", &[".mesh", ".meshb"], most),
         ("MFEM", &[".mfem"], most),
-        ("CGNS", &["_p3.cgns", "bc.cgns", "offset.cgns", "hexa27.cgns"], few),
+        ("Nektar++", &[".xml"], most),
+        ("CGNS", &["_p3.cgns", "bc.cgns", "offset.cgns", "hexa27.cgns", "zones.cgns"], few),
+        ("HOPR", &[".h5"], few),
     ] {
         if only.as_ref().is_some_and(|only| only != name) {
             continue;
         }
         fuzz(&Format { name, endings, mutations }, seed);
         // The child that reads CGNS has a limit of its own; the threads that listen to it take address space.
-        if let (Some(before), Some(after), true) = (before, peak(), name != "CGNS") {
+        if let (Some(before), Some(after), true) = (before, peak(), !["CGNS", "HOPR"].contains(&name)) {
             println!("peak memory grew by {} kB", after - before);
             assert!(after - before < ALLOWANCE_KB, "{name}: peak memory grew by {} kB", after - before);
         }

@@ -21,6 +21,7 @@ mod environment;
 mod fallback;
 mod fields;
 mod fit;
+mod fluent;
 mod foreign_linkage;
 mod formats;
 mod fuzz_formats;

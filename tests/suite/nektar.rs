@@ -315,6 +315,33 @@ fn no_damage_crashes() {
     }
 }
 
+/// Meshes of Nektar++'s own tests: volume and area are what a script finds that shares no code with the program.
+#[test]
+fn real_files_have_the_measures_that_an_independent_script_finds() {
+    let real = |name: &str| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/nektar").join(name);
+        formats::read(&path).unwrap()
+    };
+    for (name, count, volume, area) in [
+        ("prism_deformed.xml", 3, 1.6, 9.669_849_982_130_405),
+        ("tet_curved.xml", 24, 5.097_658_610_843_549, 18.245_035_414_215_83),
+    ] {
+        let mesh = real(name);
+        let (ours, areas) = measure(&mesh);
+        assert_eq!((mesh.cells().len(), mesh.order().get()), (count, 2), "{name}");
+        assert!(
+            (ours - volume).abs() < 1e-12 && (areas.values().sum::<f64>() - area).abs() < 1e-6,
+            "{name}: {ours} {areas:?}"
+        );
+        assert!(mesh.notes().is_empty(), "{name}: {:?}", mesh.notes());
+    }
+    let packed = real("packed_p4.xml");
+    let counts: Vec<usize> = [Cell::Hex, Cell::Prism].iter().map(|cell| packed.counts()[cell]).collect();
+    assert_eq!((counts, packed.order().get(), packed.points().len()), (vec![1, 2], 4, 225));
+    assert!(sagitta::certify::mesh(&packed, packed.points(), None, &sagitta::certify::Settings::default()).holds());
+    assert!(sagitta::mesh::Skin::of(&packed).unmarked.is_empty());
+}
+
 /// A MeshLink file ends in `.xml` too.
 #[test]
 fn a_linkage_file_is_no_mesh() {

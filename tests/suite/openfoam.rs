@@ -16,17 +16,17 @@ fn sample(name: &str) -> Mesh {
 }
 
 /// The files of a mesh, by the rules of OpenFOAM's user guide: faces between cells first, the owner the lower of the two.
-struct Case {
-    points: Vec<[f64; 3]>,
-    faces: Vec<Vec<usize>>,
-    owner: Vec<usize>,
-    neighbour: Vec<usize>,
+pub(crate) struct Case {
+    pub(crate) points: Vec<[f64; 3]>,
+    pub(crate) faces: Vec<Vec<usize>>,
+    pub(crate) owner: Vec<usize>,
+    pub(crate) neighbour: Vec<usize>,
     /// Name, first face, number of faces.
-    patches: Vec<(String, usize, usize)>,
+    pub(crate) patches: Vec<(String, usize, usize)>,
 }
 
 impl Case {
-    fn of(mesh: &Mesh) -> Case {
+    pub(crate) fn of(mesh: &Mesh) -> Case {
         let mut sides: BTreeMap<FaceKey, Vec<(usize, Vec<NodeId>)>> = BTreeMap::new();
         for (n, cell) in mesh.cells().iter().enumerate() {
             for face in cell.cell.faces() {
@@ -126,7 +126,7 @@ impl Case {
 }
 
 /// Cells as sets of their corners, sides by name as sets of theirs.
-fn content(mesh: &Mesh) -> BTreeMap<(Cell, String), BTreeSet<Vec<[u64; 3]>>> {
+pub(crate) fn content(mesh: &Mesh) -> BTreeMap<(Cell, String), BTreeSet<Vec<[u64; 3]>>> {
     let mut found: BTreeMap<_, BTreeSet<_>> = BTreeMap::new();
     for block in mesh.blocks().iter().filter(|block| block.cell.dimension() >= 2) {
         let name = if block.cell.dimension() == 2 { mesh.label(block.entity) } else { String::new() };

@@ -77,6 +77,11 @@ fn detect(head: &Head) -> Verdict {
     if is { Verdict::ByContent } else { Verdict::No }
 }
 
+/// Why no numbers of corners make neighbours collapse their triangles alike, where there are none: to be asked before long work.
+pub(super) fn misfit(mesh: &Mesh) -> Option<String> {
+    corners::numbers(mesh).err()
+}
+
 /// The points of a mesh as Nektar++ has it.
 ///
 /// # Errors

@@ -3,8 +3,6 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use glam::DVec3;
-
 use super::fault::FoamFault;
 use super::tokens::Tokens;
 use crate::element::Cell;
@@ -107,9 +105,7 @@ fn put_together(assembly: &mut Assembly, cells: &[Faces], faces: &Faces, patches
     if let Some(cell) = found.iter().position(Option::is_none) {
         let others = found.iter().filter(|own| own.is_none()).count() - 1;
         let nodes: Vec<NodeId> = cells[cell].iter().flatten().copied().collect();
-        let middle: DVec3 =
-            nodes.iter().map(|node| assembly.parts.points[node.index()]).sum::<DVec3>() / nodes.len().max(1) as f64;
-        let at = format!("({:.4}, {:.4}, {:.4})", middle.x, middle.y, middle.z);
+        let at = from_faces::place(&assembly.parts.points, &nodes);
         return Err(FoamFault::Polyhedron { cell, at, faces: from_faces::told(&cells[cell]), others });
     }
     for (cell, corners) in found.iter().flatten() {

@@ -104,6 +104,7 @@ pub static SOLVERS: &[Solver] = &[
                 (Cell::Hex, 4),
             ],
             groups: Some(ONE_EACH),
+            misfit: nektar::misfit,
             notes: "geometry, composites and an expansion of the mesh's order; nodes inside cells follow from the faces",
             ..MSH
         }],

@@ -10,13 +10,11 @@ fn foreign_meshes_are_named_with_a_remedy() {
     let place = Place::new();
     let hdf5: &[u8] = b"\x89HDF\r\n\x1a\n";
     let adf: &[u8] = b"\x01\x02\x03\x04ADF Database Version";
-    let foreign: [(&str, &[u8], &str, &str); 17] = [
+    let foreign: [(&str, &[u8], &str, &str); 15] = [
         ("dollar.bdf", b"$ made by a mesher\nBEGIN BULK\nGRID,1,,0.,0.,0.\n", "Nastran", "gmsh"),
         ("section.bdf", b"$NODES of the wing\nGRID           1              0.      0.      0.\n", "Nastran", "gmsh"),
         ("lower.nas", b"$\ngrid,1,,0.,0.,0.\n", "Nastran", "gmsh"),
         ("comments.bdf", b"$ nothing but comments\n$ for pages\n", "Nastran", "gmsh"),
-        ("fluent.msh", b"(0 \"made by\")\n(2 3)\n", "Fluent", "CGNS"),
-        ("bare.msh", b"(2 3)\n(10 (0 1 8 0 3))\n", "Fluent", "CGNS"),
         ("a.msh.h5", hdf5, "Fluent", "CGNS"),
         ("points", b"/*---*\\\nFoamFile\n{\n}\n", "OpenFOAM", "the case's folder"),
         ("a.stl", b"solid a\n facet normal 0 0 1\n", "STL", "STEP"),
