@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::form::{self, Form};
-use super::input;
+use super::{input, signals};
 use crate::cli::exit::DONE;
 use crate::cli::files::Files;
 use crate::cli::help::OUTPUT;
@@ -27,6 +27,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     Files::of_mesh(&options.mesh).writes_mesh(Some(&options.output), options.form.solver()).check()?;
     options.form.check(std::slice::from_ref(&options.output))?;
     let mesh = input::mesh(&options.mesh)?;
+    signals::result_is(&options.output, DONE);
     let written = options.form.write(&options.output, &mesh, &[])?;
     let mut beside = Beside::default();
     let notes: String = mesh.notes().iter().chain(&written).map(|note| format!("note: {note}\n")).collect();

@@ -14,7 +14,7 @@ pub(super) const NOT_CERTIFIED: u8 = 4;
 pub(super) const STOPPED: u8 = 5;
 /// Done as with [`DONE`], but a file beside the result, or standard output, could not be written.
 pub(super) const SIDE_FILE: u8 = 6;
-/// Interrupted before there was anything to keep, or twice: ended at once, nothing was written.
+/// Interrupted before there was anything to keep, or twice: ended at once, without a result.
 pub(super) const INTERRUPTED: u8 = 130;
 
 /// What a code means, for the help.
@@ -27,6 +27,6 @@ pub(super) fn meaning(code: u8) -> &'static str {
         NOT_CERTIFIED => "not all is proven (project: closest points), or --require-all is not met",
         STOPPED => "stopped early: limit or interrupt; certified, faces as with 3 (curve)",
         SIDE_FILE => "as 0, but a file beside the result, or stdout, was not written (told)",
-        _ => "interrupted while reading, or twice: ended at once, nothing is written",
+        _ => "interrupted while reading, or twice: ended at once, without a result",
     }
 }

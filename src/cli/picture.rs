@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
-use super::{form, input};
+use super::{form, input, signals};
 use crate::cli::exit::DONE;
 use crate::cli::files::Files;
 use crate::cli::output::{Beside, Failure, print};
@@ -116,6 +116,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     #[cfg(not(feature = "cad"))]
     let drawn = picture::draw(&mesh, linear.as_deref(), &title, &settings, None);
     let drawn = drawn.map_err(|cause| format!("{name}: {cause}"))?;
+    signals::result_is(&options.output, DONE);
     formats::write_bytes(&options.output, &drawn.png)?;
     let mut text: String = drawn.worst.iter().map(|line| format!("{line}\n")).collect();
     if !drawn.left_out.is_empty() {

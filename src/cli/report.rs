@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::Value;
 
-use super::{form, input};
+use super::{form, input, signals};
 use crate::cli::exit::DONE;
 use crate::cli::files::Files;
 use crate::cli::help::{INPUT, OUTPUT};
@@ -60,6 +60,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let distances = options.cad.face_distances(&mesh)?;
     #[cfg(not(feature = "cad"))]
     let distances = rustc_hash::FxHashMap::default();
+    signals::result_is(&options.output, DONE);
     write_page(&options.output, &page.text(|face| distances.get(&face).copied())?)?;
     let mut beside = Beside::default();
     beside.tell(print(&format!("written: {}", options.output.display())));

@@ -34,11 +34,18 @@ const ENDING: &str = ".part";
 /// Tries until a temporary name is locked: a run that clears away may be the first to lock it.
 const TRIES: usize = 100;
 
-/// Temporary files of this process.
-static LIVE: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+/// Files of this process.
+struct Files {
+    /// Temporary ones.
+    live: Vec<PathBuf>,
+    /// What got its name, as that was asked for.
+    named: Vec<PathBuf>,
+}
 
-fn live() -> MutexGuard<'static, Vec<PathBuf>> {
-    LIVE.lock().unwrap_or_else(PoisonError::into_inner) // a list of names is whole at any time
+static FILES: Mutex<Files> = Mutex::new(Files { live: Vec::new(), named: Vec::new() });
+
+fn files() -> MutexGuard<'static, Files> {
+    FILES.lock().unwrap_or_else(PoisonError::into_inner) // lists of names are whole at any time
 }
 
 /// Why a content was not written.
@@ -126,8 +133,12 @@ impl Part {
             self.path.disable_cleanup(true);
             return Err(io::Error::other("someone has put something else in the place of its temporary file"));
         }
+        let mut files = files(); // an end at this moment waits until it is known what is there
         fs::rename(&self.path, &target.path)?;
         self.path.disable_cleanup(true);
+        if !files.named.contains(&self.name) {
+            files.named.push(self.name.clone());
+        }
         match File::open(folder(&target.path)).and_then(|folder| folder.sync_all()) {
             // Some file systems cannot, and some folders may not be read; the file has its name all the same.
             Err(error)
@@ -146,17 +157,17 @@ impl Part {
 impl Drop for Part {
     fn drop(&mut self) {
         let path: &Path = &self.path;
-        live().retain(|own| own != path);
+        files().live.retain(|own| own != path);
     }
 }
 
 /// Creates a file, known to [`abandon`].
 fn new(folder: &Path, prefix: &OsStr) -> io::Result<NamedTempFile> {
-    let mut live = live();
+    let mut files = files();
     let mut builder = tempfile::Builder::new();
     let builder = builder.prefix(prefix).suffix(ENDING).permissions(Permissions::from_mode(MODE));
     let file = builder.tempfile_in(folder)?;
-    live.push(file.path().to_path_buf());
+    files.live.push(file.path().to_path_buf());
     Ok(file)
 }
 
@@ -193,11 +204,14 @@ fn remove_left(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Removes the temporary files of this process, which is about to end: no new one is made from here on.
-pub fn abandon() {
-    let live = live();
-    for path in live.iter() {
+/// Removes the temporary files of this process, which is about to end: no file is made or gets its name from here on. Returns those
+/// that got theirs before, as they were asked for.
+pub fn abandon() -> Vec<PathBuf> {
+    let mut files = files();
+    for path in &files.live {
         let _ = fs::remove_file(path); // it may have got its name
     }
-    std::mem::forget(live); // whoever waits for it waits for the end
+    let named = std::mem::take(&mut files.named);
+    std::mem::forget(files); // whoever waits for it waits for the end
+    named
 }

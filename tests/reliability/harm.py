@@ -143,7 +143,7 @@ def signals(table, sagitta):
                     count(outcomes, f"exit {code}")
                     written = out.exists()
                     valid = not written or run([sagitta, "check", out, "--linear", mesh]) == 0
-                    known = code in ((0, 3, 5) if written else (130,))
+                    known = code in ((0, 3, 5, 6) if written else (130,))
                     if not valid or not known or leftovers(folder, ["out.msh"]):
                         broken.append(f"step {step}: exit {code}, {os.listdir(folder)}, valid {valid}")
             table.row(f"{name}, {'once' if times == 1 else 'twice'}, in each step of `curve`", STEPS, outcomes, broken)

@@ -186,6 +186,38 @@ fn a_second_wish_ends_at_once() {
     assert_eq!(names_in(dir.path()), [""; 0]);
 }
 
+/// stdout takes nothing, so that the report cannot be printed: the file that was asked for is there by then.
+fn interrupted_after_its_result(arguments: &[std::ffi::OsString], out: &Path, wishes: usize) -> (ExitStatus, String) {
+    let (_reader, mut stdout) = std::io::pipe().unwrap();
+    let full = rustix::pipe::fcntl_getpipe_size(&stdout).unwrap();
+    stdout.write_all(&vec![b'-'; full]).unwrap();
+    let child = program().args(arguments).stdout(stdout).spawn().unwrap();
+    wait_for("its file does not come", || out.exists().then_some(()));
+    for _ in 0..wishes {
+        sleep(Duration::from_millis(1100));
+        send("INT", child.id());
+    }
+    ended(child)
+}
+
+#[test]
+fn an_end_after_the_result_has_the_code_of_the_result() {
+    let dir = tempfile::tempdir().unwrap();
+    let (mesh, cad) = (fixture("plate", "msh"), fixture("plate", "step"));
+    let (out, link, other) = (dir.path().join("o.msh"), dir.path().join("l.xml"), dir.path().join("o.vtu"));
+    let curve = args!["curve", mesh, "--cad", cad, "--order", "2", "-q", "-o", out].map(Into::into);
+    let link_up = args!["link", mesh, "--cad", cad, "-o", link].map(Into::into);
+    let convert = args!["convert", mesh, "-o", other].map(Into::into);
+    for (arguments, out, wishes) in [(&curve[..], &out, 2), (&link_up[..], &link, 1), (&convert[..], &other, 1)] {
+        let (status, told) = interrupted_after_its_result(arguments, out, wishes);
+        assert_eq!(status.code(), Some(6), "{arguments:?}: {told}");
+        let line = format!("sagitta: interrupted (SIGINT): written before: {}; nothing else\n", out.display());
+        assert!(told.ends_with(&line), "{told}");
+    }
+    sagitta(args!["check", out, "--linear", mesh]).expect(0);
+    assert_eq!(names_in(dir.path()), ["l.xml", "o.msh", "o.vtu"]);
+}
+
 /// `nohup` has its programs ignore the end of the terminal.
 #[test]
 fn what_is_ignored_from_the_beginning_stays_ignored() {

@@ -17,7 +17,7 @@ use crate::cli::help::{EXPERT, INPUT, OUTPUT, QUALITY, RUN, WHAT};
 use crate::cli::output::{Beside, Failure, message, print, write_json};
 use crate::cli::page::{html_name, write_page};
 use crate::cli::tips::not_exchanged;
-use crate::cli::{input, threads, told};
+use crate::cli::{input, signals, threads, told};
 use crate::curve::{Checkpointing, Curved, Job, Preview, Settings, Trace};
 use crate::element::Order;
 use crate::formats::{self, Field, Solver, WriteOptions};
@@ -286,6 +286,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     };
     // The mesh first; and the rest also where the mesh could not be written.
     let missing = missing(options, &curved).filter(|_| !options.keep_invalid);
+    signals::result_is(output, exit_code(options, &curved));
     let measures = if options.tells_measures() { measures(&curved) } else { Measures::default() };
     let written = if missing.is_none() { write(options, output, &curved, &measures) } else { Ok(Vec::new()) };
     let traced = options.trace.as_ref().map_or(Ok(()), |path| trace.write(path, &curved.smoothed));

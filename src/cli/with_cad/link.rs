@@ -12,7 +12,7 @@ use crate::cli::files::Files;
 use crate::cli::help::{INPUT, OUTPUT};
 use crate::cli::output::{Beside, Failure, print, write_json};
 use crate::cli::tips::not_exchanged;
-use crate::cli::{form, input, told};
+use crate::cli::{form, input, signals, told};
 use crate::formats;
 use crate::report::Told;
 
@@ -58,6 +58,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
         mesh_reading: input::reading(),
     };
     let Linked { text, summary } = job.run()?;
+    signals::result_is(&options.output, DONE);
     formats::write_bytes(&options.output, &text)?;
     let mut beside = Beside::default();
     if let Some(path) = &options.report {

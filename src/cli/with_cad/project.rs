@@ -19,7 +19,7 @@ use crate::cli::files::Files;
 use crate::cli::help::{INPUT, OUTPUT, RUN};
 use crate::cli::input::memory;
 use crate::cli::output::{Beside, Failure, message, print, write_json};
-use crate::cli::{threads, told};
+use crate::cli::{signals, threads, told};
 use crate::formats;
 use crate::report::{CadReport, FeetReport, Told};
 
@@ -76,6 +76,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     if streamed {
         beside.tell(print(std::str::from_utf8(&text)?.trim_end()));
     } else {
+        signals::result_is(&options.output, code);
         formats::write_bytes(&options.output, &text)?;
     }
     if let Some(path) = &options.report {

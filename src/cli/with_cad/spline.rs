@@ -8,6 +8,7 @@ use clap::Args;
 use crate::cli::exit::DONE;
 use crate::cli::files::Files;
 use crate::cli::output::{Beside, Failure, print};
+use crate::cli::signals;
 use crate::formats;
 
 /// Options of `sagitta spline`.
@@ -30,6 +31,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     let place = tempfile::tempdir()?;
     let made = place.path().join("airfoil.step");
     airfoil.write_step(&made).map_err(|cause| named(&cause))?;
+    signals::result_is(output, DONE);
     formats::write_bytes(output, &std::fs::read(&made)?)?;
     let (points, edge) = (airfoil.points().len(), if airfoil.is_sharp() { "sharp" } else { "blunt" });
     let mut beside = Beside::default();
