@@ -115,7 +115,10 @@ impl<T: H5Type + bytemuck::Pod> Rows<T> {
             self.set.write_slice(values, Hyperslab::new(vec![places.into(), (0..self.width).into()]))
         };
         self.done += rows;
-        written.map_err(io::Error::other)
+        written.map_err(|error| match Unwritten::from(error) {
+            Unwritten::Io(error) => error,
+            Unwritten::Inexpressible(reason) => io::Error::other(reason),
+        })
     }
 }
 
