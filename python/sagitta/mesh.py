@@ -164,7 +164,7 @@ class Mesh:
 
         Args:
             path: the file; it appears under its name only when it is complete.
-            target: the solver that it is for (``mfem``, ``pyfr``, ``dolfinx``, ``ngsolve``, ``flexi``, ``su2``, ``gmsh``, ``paraview``).
+            target: the solver that it is for (``mfem``, ``pyfr``, ``dolfinx``, ``ngsolve``, ``nektar``, ``flexi``, ``su2``, ``gmsh``, ``paraview``).
             msh_version: of MSH files, ``4.1`` or ``2.2``.
             ascii: MSH as text.
             volume_only: VTU without the boundary elements.

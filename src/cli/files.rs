@@ -48,7 +48,10 @@ impl Files {
     pub(super) fn of_mesh(path: &Path) -> Files {
         let expected = fs::metadata(path).map_or(0, |metadata| metadata.len() / SHRINKS);
         let files = Files { expected, ..Files::default() };
-        files.reads("the mesh", Some(path)).reads("the mesh's list of names", formats::beside(path))
+        let beside = formats::beside(path).into_iter();
+        beside.fold(files.reads("the mesh", Some(path)), |files, path| {
+            files.reads("a file read with the mesh", Some(path))
+        })
     }
 
     /// Adds one that is read, where it is given.
@@ -91,6 +94,7 @@ impl Files {
     /// Two of the files are one, or one cannot be written.
     pub(super) fn check(&self) -> Result<(), Failure> {
         self.apart()?;
+        self.outside_folders()?;
         if let Some(output) = &self.output {
             formats::check_output(output, self.expected, self.solver)?;
         }
@@ -99,6 +103,27 @@ impl Files {
         }
         for (_, path) in &self.written {
             formats::check_file(path, SMALL)?;
+        }
+        Ok(())
+    }
+
+    /// Whether no other file lies in a folder that is written along with a mesh.
+    fn outside_folders(&self) -> Result<(), Failure> {
+        for (role, path) in &self.written {
+            let Some(folder) = formats::folder_beside(path).and_then(|folder| folder.canonicalize().ok()) else {
+                continue;
+            };
+            let lies_inside = |own: &Path| {
+                let target = formats::followed(own).and_then(|target| formats::folder(&target).canonicalize());
+                target.is_ok_and(|parent| parent == folder)
+            };
+            if let Some((other, own)) = self.read.iter().chain(&self.written).find(|(_, own)| lies_inside(own)) {
+                let (file, folder, own) = (path.display(), folder.display(), own.display());
+                return Err(format!(
+                    "{file}: {role} writes to the folder {folder}, in which {other} is ({own}); give another name"
+                )
+                .into());
+            }
         }
         Ok(())
     }

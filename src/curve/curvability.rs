@@ -10,16 +10,19 @@
 
 use cad::{EntityId, Evaluation, Group};
 use glam::{DMat3, DVec3};
+use rayon::prelude::*;
 
 use super::level::{Case, Level};
 use super::wall::corner::{Arms, FaceCorner, chord, face_corners};
 use crate::associate::{Association, Classification, SpotReport, sides};
-use crate::mesh::{ElementId, FaceKey, Incidence, NodeId};
+use crate::mesh::{Element, ElementId, FaceKey, Incidence, NodeId};
 
 /// Corners with a smaller `q` are told.
 const LITTLE_ROOM: f64 = 0.3;
 /// Columns with a larger `s` are told.
 const SQUEEZED: f64 = 0.5;
+/// Beyond that so little is left of a column that its cells are as good as impossible.
+const TAKEN_UP: f64 = 0.8;
 /// Cells of a column that are gone through.
 const LONGEST_COLUMN: usize = 1000;
 
@@ -87,10 +90,21 @@ pub fn spots(level: &Level) -> Vec<Spot> {
     spots
 }
 
-/// Whether at some corner `q <= 0` where projection put the wall.
-pub(super) fn has_impossible_corners(level: &Level) -> bool {
+/// The corners with `q <= 0` where projection put the wall.
+pub(super) fn impossible_corners(level: &Level) -> Vec<Spot> {
     let survey = Survey { level, arms: Arms::new(level.mesh().order()) };
-    survey.face_corners().iter().chain(&survey.element_corners()).any(Spot::is_impossible)
+    let mut spots = survey.face_corners();
+    spots.extend(survey.element_corners());
+    spots.retain(Spot::is_impossible);
+    spots
+}
+
+/// Those, and the columns that the wall's displacement takes up.
+pub(super) fn impossible(level: &Level) -> Vec<Spot> {
+    let mut spots = impossible_corners(level);
+    let columns = Survey { level, arms: Arms::new(level.mesh().order()) }.columns();
+    spots.extend(columns.into_iter().filter(|spot| spot.room() < 1.0 - TAKEN_UP));
+    spots
 }
 
 /// A spot in words and figures.
@@ -167,41 +181,38 @@ impl Survey<'_, '_> {
     }
 
     fn element_corners(&self) -> Vec<Spot> {
+        let cells = self.level.mesh().cells();
+        cells.par_ids().flat_map_iter(|e| self.corners_of(&cells.get(e))).collect()
+    }
+
+    /// The corners of an element all of whose edges there lie on walls.
+    fn corners_of(&self, own: &Element) -> Vec<Spot> {
         let at = |node: NodeId| self.at(node);
-        let on_wall = |node: NodeId| self.is_held(node);
+        let dimension = own.cell.dimension();
+        if own.corners().iter().filter(|&&node| self.is_held(node)).count() <= dimension {
+            return Vec::new(); // three edges on walls have four ends there
+        }
         let mut spots = Vec::new();
-        for own in self.level.mesh().cells().iter() {
-            let dimension = own.cell.dimension();
-            if own.corners().iter().filter(|&&node| on_wall(node)).count() <= dimension {
-                continue; // three edges on walls have four ends there
+        for corner in 0..own.cell.corner_count() {
+            let arms: Vec<Vec<usize>> = self.arms.at(own.cell, corner).collect();
+            let held = |arm: &Vec<usize>| arm.iter().all(|&place| self.is_held(own.nodes[place]));
+            if arms.len() != dimension || !arms.iter().all(held) {
+                continue;
             }
-            for corner in 0..own.cell.corner_count() {
-                let arms: Vec<Vec<usize>> = self.arms.at(own.cell, corner).collect();
-                if arms.len() != dimension {
-                    continue;
-                }
-                if !arms.iter().all(|arm| arm.iter().all(|&place| on_wall(own.nodes[place]))) {
-                    continue;
-                }
-                let up = self.level.plane().map(|plane| plane.normal);
-                let edges = |of: &dyn Fn(&Vec<usize>) -> DVec3| {
-                    let mut columns = arms.iter().map(of).chain(up);
-                    DMat3::from_cols(
-                        columns.next().unwrap_or_default(),
-                        columns.next().unwrap_or_default(),
-                        columns.next().unwrap_or_default(),
-                    )
-                };
-                let flat = edges(&|arm| chord(arm, own.nodes, &at));
-                let bent = edges(&|arm| self.arms.tangent(arm, own.nodes, &at));
-                let q = bent.determinant() / flat.determinant();
-                if q < LITTLE_ROOM {
-                    let node = own.nodes[corner];
-                    let inner = self.level.wall.classification(own.nodes[arms[0][2]].index());
-                    let group = self.level.case.association.group_of(inner);
-                    let bend = group.map_or(0.0, |group| self.bend(group, own.nodes, &arms));
-                    spots.push(Spot::ElementCorner { element: own.id, node, q, bend });
-                }
+            let up = self.level.plane().map(|plane| plane.normal);
+            let edges = |of: &dyn Fn(&Vec<usize>) -> DVec3| {
+                let mut columns = arms.iter().map(of).chain(up);
+                let mut next = || columns.next().unwrap_or_default();
+                DMat3::from_cols(next(), next(), next())
+            };
+            let flat = edges(&|arm| chord(arm, own.nodes, &at));
+            let bent = edges(&|arm| self.arms.tangent(arm, own.nodes, &at));
+            let q = bent.determinant() / flat.determinant();
+            if q < LITTLE_ROOM {
+                let inner = self.level.wall.classification(own.nodes[arms[0][2]].index());
+                let group = self.level.case.association.group_of(inner);
+                let bend = group.map_or(0.0, |group| self.bend(group, own.nodes, &arms));
+                spots.push(Spot::ElementCorner { element: own.id, node: own.nodes[corner], q, bend });
             }
         }
         spots
@@ -225,7 +236,11 @@ impl Survey<'_, '_> {
         let Case { boundary, association, .. } = self.level.case;
         let mesh = self.level.mesh();
         let cells = mesh.cells();
-        let corners = cells.iter().flat_map(|own| own.corners().iter().map(move |n| (n.index(), own.id)));
+        if !cells.blocks().iter().any(|block| block.cell.stacks()) {
+            return Vec::new();
+        }
+        let stacked = cells.iter().filter(|own| own.cell.stacks());
+        let corners = stacked.flat_map(|own| own.corners().iter().map(move |n| (n.index(), own.id)));
         let around = Incidence::new(self.level.elevated.linear_nodes, corners);
         let sides = sides(mesh, boundary);
         let moved = |face: usize, inward: DVec3| {

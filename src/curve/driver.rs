@@ -100,7 +100,8 @@ pub(super) fn drive(
     clock.step(Step::Certify);
     let proof = Proof::of(&level);
     // Recovery moves the cells behind faces; behind those of a surface mesh there are none.
-    let holds = settings.surface || (proof.holds() && smoothed.end.worst() >= settings.floor);
+    let good = proof.holds() && smoothed.end.worst() >= settings.floor;
+    let holds = settings.surface || (good && level.wall.is_on_cad());
     let Recovered { proof, off_cad } = if holds {
         Recovered { proof, off_cad: Vec::new() }
     } else {

@@ -13,6 +13,7 @@ use super::observer::{Clock, Observer, Step};
 use super::orders::projected;
 use super::settings::Settings;
 use crate::associate::{self, AssociateError, Classified, Linkage, OpenFace, Summary};
+use crate::certify;
 use crate::element::Order;
 use crate::formats;
 use crate::mesh::{Boundary, Mesh};
@@ -91,7 +92,25 @@ impl Job {
         clock.step(Step::Associate);
         let associate = |cad: &Model| self.associated(&linear, cad);
         let associated = self.scaled(cad, associate)?.0;
-        drive(linear, associated, &self.settings, clock).map_err(|cause| self.error(cause))
+        let curved = drive(linear, associated, &self.settings, clock).map_err(|cause| self.error(cause))?;
+        self.held(curved)
+    }
+
+    /// The mesh as the solver has it that it is for, proven anew where that is not the mesh that was made.
+    fn held(&self, mut curved: Curved) -> Result<Curved, JobError> {
+        let Some((file, solver)) = &self.solver else { return Ok(curved) };
+        let Some(points) = formats::held(file, solver, &curved.mesh)? else { return Ok(curved) };
+        let moved = curved.mesh.points().iter().zip(&points).filter(|(own, held)| own != held).count();
+        if moved > 0 {
+            curved.mesh.points_mut().copy_from_slice(&points);
+            let linear = &curved.straight[..curved.linear_nodes];
+            curved.certificate = certify::mesh(&curved.mesh, &points, Some(linear), &certify::Settings::default());
+            let title = solver.title;
+            curved.association.notes.push(format!(
+                "{moved} nodes inside cells are where {title} makes them from the faces; that mesh is what is certified and written"
+            ));
+        }
+        Ok(curved)
     }
 
     /// What would lie on what, and where the CAD leaves little room: reads, associates and projects, and goes no further.

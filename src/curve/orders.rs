@@ -28,7 +28,7 @@ use super::layers::leave_straight_beyond;
 use super::level::{Case, Level};
 use super::observer::{Clock, Observer, Relay, Step};
 use super::proof::Proof;
-use super::recover::recover;
+use super::recover::{recover, release_ahead};
 use super::settings::Settings;
 use super::smoothing::smooth_level;
 use super::start::start;
@@ -37,7 +37,7 @@ use super::wall::{follow_rims, project};
 use crate::element::Order;
 use crate::mesh::Mesh;
 use crate::mesh::elevate::elevate;
-use crate::smooth::{self, Engine, Progress, Smoothed, Summary};
+use crate::smooth::{self, Begin, Engine, Progress, Smoothed, Summary};
 
 /// What smoothing did at an order below the one asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -189,6 +189,9 @@ impl<'a> Continuation<'a> {
     /// Carries the volume along and smooths, or goes on from the checkpoint.
     fn smoothed(&mut self, level: &mut Level, below: Option<&Below>, clock: &mut Clock) -> Result<Smoothed, Error> {
         let work = Work::of(level);
+        if !self.case.settings.surface {
+            release_ahead(level);
+        }
         let resumed = self.found.take().map(|found| found.read(&work)).transpose()?;
         clock.step(Step::Perturb);
         if resumed.is_none() {
@@ -197,9 +200,10 @@ impl<'a> Continuation<'a> {
         }
         clock.step(Step::Smooth);
         let mut relay = Relay { observer: clock.observer, work };
+        let begin = resumed.map_or(Begin::Anew, Begin::From);
         let Settings { smoothing, surface, .. } = self.case.settings;
         let sweeps = if *surface { 0 } else { smoothing.max_sweeps };
-        Ok(smooth_level(level, &smooth::Settings { max_sweeps: sweeps, ..smoothing.clone() }, resumed, &mut relay))
+        Ok(smooth_level(level, &smooth::Settings { max_sweeps: sweeps, ..smoothing.clone() }, begin, &mut relay))
     }
 }
 

@@ -110,11 +110,15 @@ fn middle(vectors: &[DVec3]) -> Option<DVec3> {
 
 /// Numbers of the elements behind faces that are not proven free of folds, rising.
 pub(crate) fn behind(level: &Level, walls: &Walls) -> Vec<ElementId> {
-    if walls.hold() {
+    behind_faces(level, &walls.failures.iter().map(|own| own.face).collect())
+}
+
+/// Numbers of the elements behind boundary faces, rising.
+pub(crate) fn behind_faces(level: &Level, faces: &FxHashSet<usize>) -> Vec<ElementId> {
+    if faces.is_empty() {
         return Vec::new();
     }
     let boundary = level.case.boundary;
-    let faces: FxHashSet<usize> = walls.failures.iter().map(|own| own.face).collect();
     let corners = faces.iter().flat_map(|&face| boundary.corners[face].iter().copied());
     let corners: FxHashSet<NodeId> = corners.collect();
     let has_face = |own: &Element| {

@@ -56,7 +56,7 @@ pub fn gradients(cell: Cell, order: Order, at: [f64; 3]) -> Vec<[f64; 3]> {
 }
 
 /// The inverse of a square row-major matrix, by Gauss-Jordan elimination with row pivots.
-fn inverse(mut m: Vec<f64>) -> Vec<f64> {
+pub(crate) fn inverse(mut m: Vec<f64>) -> Vec<f64> {
     let n = m.len().isqrt();
     let mut inv = vec![0.0; n * n];
     for i in 0..n {

@@ -297,6 +297,13 @@ impl Cell {
         faces.chain(edges)
     }
 
+    /// Whether cells of this kind can stand one on another in a column: two of its sides share no corner.
+    #[must_use]
+    pub fn stacks(self) -> bool {
+        let apart = |a: &[u8], b: &[u8]| a.iter().all(|corner| !b.contains(corner));
+        self.sides().any(|one| self.sides().any(|other| apart(one, other)))
+    }
+
     /// Number of nodes of the element of order `p`.
     #[must_use]
     pub fn node_count(self, order: Order) -> usize {
@@ -345,6 +352,12 @@ impl fmt::Display for Cell {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn cells_with_two_sides_apart_stack() {
+        let stack: Vec<Cell> = Cell::ALL.into_iter().filter(|cell| cell.stacks()).collect();
+        assert_eq!(stack, [Cell::Quad, Cell::Prism, Cell::Hex]);
+    }
 
     #[test]
     fn the_table_proves_itself() {

@@ -129,6 +129,8 @@ pub enum Fault {
     MixedOrders { order: Order, here: Order },
     #[error("{0}: the limit of this program")]
     TooMany(#[from] TooMany),
+    #[error("the XML is damaged: {0}")]
+    Xml(String),
     #[error("{0}: the file is damaged")]
     Inconsistent(#[from] Inconsistent),
     /// A fault that only files of one format can have.

@@ -75,11 +75,6 @@ const MESHES: &[Foreign] = &[
         remedy: "export the mesh as CGNS",
         is: |head| head.bytes.starts_with(b"#!TD") || first(head, "TITLE") || first(head, "VARIABLES"),
     },
-    Foreign {
-        name: "a file of an OpenFOAM case",
-        remedy: "write the mesh in another format; polyhedra cannot be curved",
-        is: |head| head.lines().iter().any(|line| line == "FoamFile"),
-    },
     Foreign { name: "an XDMF file", remedy: MESHIO, is: |head| head.text.starts_with(b"<") && holds(head, b"<Xdmf") },
 ];
 
@@ -120,5 +115,5 @@ pub(super) fn refusal(head: &Head) -> Option<Refusal> {
         return Some(Refusal::other("a STEP file, which is CAD, not a mesh"));
     }
     let xml = head.text.starts_with(b"<");
-    xml.then(|| Refusal::other(format!("an XML file, but not a VTU mesh; {} are read", readable("and"))))
+    xml.then(|| Refusal::other(format!("an XML file, but not a VTU or Nektar++ mesh; {} are read", readable("and"))))
 }

@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
+use glam::DVec3;
+
 use super::detect::{Head, Verdict};
 use super::error::Error;
 use super::loss::Loss;
@@ -32,12 +34,17 @@ pub struct Reader {
     pub(super) read: fn(Input, &ReadOptions) -> Result<Mesh, Error>,
 }
 
+/// The points of a mesh as the files of a format hold it; why they cannot hold it, where they cannot.
+pub(super) type Held = fn(&Mesh) -> Result<Vec<DVec3>, String>;
+
 /// How a format is written.
 pub struct Writer {
     /// What is written to it.
     pub holds: Holds,
     /// What a mesh may have and files do not hold; it is told when there is something to lose.
     pub(super) loses: &'static [Loss],
+    /// The points of a mesh as files hold it, of a format that does not hold them all.
+    pub(super) held: Option<Held>,
     pub(super) write: fn(&mut Part, &Mesh, &WriteOptions) -> Result<(), Unwritten>,
 }
 

@@ -13,6 +13,7 @@ mod error;
 mod field;
 mod foreign;
 mod format;
+mod from_faces;
 mod gmf;
 mod grid_layout;
 #[cfg(feature = "cgns")]
@@ -21,8 +22,10 @@ mod loss;
 mod mfem;
 pub mod msh;
 mod names;
+mod nektar;
 mod node_order;
 mod numbers;
+mod openfoam;
 mod options;
 mod orders;
 mod output;
@@ -38,12 +41,14 @@ mod target;
 mod turned;
 mod ugrid;
 mod vtk;
+mod well_formed;
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use format::Input;
-use recognise::{case_folder, detect};
+use glam::DVec3;
+use recognise::detect;
 
 pub use error::{Error, Fault, Flaw, Place};
 pub use field::{Field, Places, Support, Values};
@@ -76,10 +81,9 @@ pub fn read(path: &Path) -> Result<Mesh, Error> {
 /// Those of [`read`].
 pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Mesh, Error> {
     let refused = |reason| Error::Format { file: path.to_path_buf(), reason };
-    if let Some(refusal) = case_folder(path) {
-        return Err(refused(refusal.reason));
-    }
-    let input = Input::open(path)?;
+    let faces = openfoam::faces(path);
+    let own = faces.as_deref().unwrap_or(path);
+    let input = Input::open(own)?;
     let format = detect(&input.head()).map_err(|refusal| refused(refusal.reason))?;
     options.check_length(input.length).map_err(refused)?;
     let Some(reader) = &format.reader else { return Err(refused(format!("{} is written only", format.name))) };
@@ -95,10 +99,8 @@ pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Mesh, Error> {
 /// # Errors
 /// [`Error::Io`].
 pub fn is_mesh(path: &Path) -> Result<bool, Error> {
-    if case_folder(path).is_some() {
-        return Ok(true);
-    }
-    Ok(detect(&Input::open(path)?.head()).map_or_else(|refusal| refusal.is_mesh, |_| true))
+    let faces = openfoam::faces(path);
+    Ok(detect(&Input::open(faces.as_deref().unwrap_or(path))?.head()).map_or_else(|refusal| refusal.is_mesh, |_| true))
 }
 
 /// Whether a mesh of about `expected` bytes could be written under this name, for a solver where one is given: to be asked before
@@ -137,10 +139,16 @@ pub fn check_solver(path: &Path, solver: &Solver, mesh: &Mesh, order: Order) -> 
     }
 }
 
-/// The file beside a mesh file that is read with it, where there is one.
+/// The files that are read with a mesh file: beside it, or in the folder that it stands for.
 #[must_use]
-pub fn beside(path: &Path) -> Option<PathBuf> {
-    if ugrid::FORMAT.is_name(path) { ugrid::mapbc::beside(path) } else { None }
+pub fn beside(path: &Path) -> Vec<PathBuf> {
+    if ugrid::FORMAT.is_name(path) { ugrid::mapbc::beside(path).into_iter().collect() } else { openfoam::files(path) }
+}
+
+/// The folder that files are written to along with a mesh of this name, where its format has one.
+#[must_use]
+pub fn folder_beside(path: &Path) -> Option<PathBuf> {
+    vtk::VTM.is_name(path).then(|| vtk::folder_of(path))
 }
 
 /// Whether a file of this name would show [`WriteOptions::fields`].
@@ -199,6 +207,31 @@ fn write_as(format: &Format, path: &Path, mesh: &Mesh, options: &WriteOptions<'_
     if let Some(reason) = writer.holds.refusal(&mesh) {
         return Err(refused(reason));
     }
+    let moved = match writer.held {
+        Some(held) => moved(&mesh, &held(&mesh).map_err(refused)?),
+        None => None,
+    };
     output::write(path, |part| (writer.write)(part, &mesh, options))?;
-    Ok(left_out.into_iter().chain(writer.loses.iter().filter_map(|loss| loss.note(&mesh))).collect())
+    Ok(left_out.into_iter().chain(moved).chain(writer.loses.iter().filter_map(|loss| loss.note(&mesh))).collect())
+}
+
+/// The points of a mesh as a solver has it from a file of this name; `None` where the file holds all of them.
+///
+/// # Errors
+/// Those of [`check_solver`]; [`Error::Inexpressible`].
+pub fn held(path: &Path, solver: &Solver, mesh: &Mesh) -> Result<Option<Vec<DVec3>>, Error> {
+    let file = path.to_path_buf();
+    let intake = solver.intake(path).map_err(|reason| Error::Format { file: file.clone(), reason })?;
+    let held = intake.format.writer.as_ref().and_then(|writer| writer.held);
+    held.map(|held| held(mesh)).transpose().map_err(|reason| Error::Inexpressible { file, reason })
+}
+
+/// A note of nodes that a file does not hold, and where its reader has them.
+fn moved(mesh: &Mesh, held: &[DVec3]) -> Option<String> {
+    let apart = mesh.points().iter().zip(held).filter(|(own, held)| own != held);
+    let (count, most) =
+        apart.fold((0, 0.0f64), |(count, most), (own, held)| (count + 1, most.max(own.distance(*held))));
+    (count > 0).then(|| {
+        format!("{count} nodes inside cells have no place in the file: its reader has them up to {most:.1e} away, where the faces put them")
+    })
 }

@@ -1,18 +1,9 @@
 //! Which format a mesh file is in: by its content, and by its name where the content has no mark of its own.
 
-use std::path::Path;
-
 use super::detect::{Head, Refusal, Verdict};
 use super::foreign;
 use super::format::Format;
 use super::registry::{REGISTRY, readable};
-
-/// What a folder is that holds a mesh as several files, where it is known.
-pub(super) fn case_folder(path: &Path) -> Option<Refusal> {
-    let is = path.join("constant/polyMesh").is_dir() || (path.ends_with("polyMesh") && path.join("faces").exists());
-    let told = "an OpenFOAM case, which is not read: its polyhedra cannot be curved; write the mesh in another format";
-    is.then(|| Refusal::unread(told))
-}
 
 /// The format of a file; else what to tell the user. Marks in the content come before names.
 pub(super) fn detect(head: &Head) -> Result<&'static Format, Refusal> {

@@ -7,25 +7,27 @@ use super::cgns;
 use super::format::{Format, Holds};
 #[cfg(feature = "cgns")]
 use super::hopr;
-use super::{gmf, mfem, msh, plot3d, su2, ugrid, vtk};
+use super::{gmf, mfem, msh, nektar, openfoam, plot3d, su2, ugrid, vtk};
 use crate::element::Cell;
 
 /// All formats, the most telling marks first.
 pub static REGISTRY: &[&Format] = &[
     &msh::FORMAT,
     #[cfg(feature = "cgns")]
-    &cgns::FORMAT,
-    #[cfg(feature = "cgns")]
     &hopr::FORMAT,
+    #[cfg(feature = "cgns")]
+    &cgns::FORMAT,
     &mfem::FORMAT,
     &gmf::FORMAT,
     &ugrid::FORMAT,
     &su2::FORMAT,
+    &nektar::FORMAT,
     &vtk::VTU,
     &vtk::VTM,
     #[cfg(feature = "cgns")]
     &vtk::HDF,
     &vtk::LEGACY,
+    &openfoam::FORMAT,
     &plot3d::FORMAT,
 ];
 

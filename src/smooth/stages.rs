@@ -24,15 +24,12 @@ use super::objective::Objective;
 use super::pace::{PATIENCE, Pace, RINGS, Stage};
 use super::patch::Patch;
 use super::problem::Kernels;
-use super::{Checkpoint, Constraint, ElementCost, Image, Problem, Progress, Settings, Smoothed, Summary, Watch};
+use super::{Checkpoint, Constraint, ElementCost, Image, Known, Problem, Progress, Settings, Smoothed, Summary, Watch};
 use crate::mesh::{ElementId, components};
 use crate::quality;
 
 /// A survey is too coarse for an element where it misses this much of its `C_JAC`.
 const BLIND: f64 = 0.01;
-/// By how much elements of a plane mesh are to be above the threshold: sweeps cost next to nothing there, and elements just above it hold
-/// back those just below. NACA's reflex airfoil at P2 ended with C_JAC 0.797, and ends with 0.824; at P4 with C_WCN 0.845, and 0.890.
-const ABOVE_IN_PLANE: f64 = 0.05;
 /// A descent ends at a sweep that gains less than this fraction of the objective.
 const GAIN: f64 = 1e-4;
 /// Weight of the square of a sample's term: how much the worst samples count.
@@ -60,20 +57,38 @@ const REGULARISATION: f64 = 0.5;
 /// that of the worst for all, one element of the torus at scale 0.5, P3, at J = -12 J_c, took 237 others along.
 const AROUND: f64 = 0.1;
 
-/// Moves the nodes `x` of a perturbed mesh to better positions, or goes on from a checkpoint of the same work; `watch` is called
-/// after every sweep and ends the work by returning false.
+/// What there is to begin with.
+#[derive(Debug, Default)]
+pub enum Begin<'k> {
+    /// Nothing: all elements are surveyed.
+    #[default]
+    Anew,
+    /// A checkpoint of the same work to go on from.
+    From(Checkpoint<'k>),
+    /// Costs of positions that differ little from those to begin at.
+    Knowing(&'k Known),
+}
+
+/// Moves the nodes `x` of a perturbed mesh to better positions; `watch` is called after every sweep and ends the work by returning false.
 pub fn smooth(
     problem: &Problem,
     constraint: &dyn Constraint,
     settings: &Settings,
     x: &mut Vec<DVec3>,
-    resumed: Option<Checkpoint>,
+    begin: Begin,
     watch: &mut dyn Watch,
 ) -> Smoothed {
     let surveys: Vec<Kernels> =
         factors(settings.survey_factor).iter().map(|f| Kernels::new(problem, problem.order.get() * f)).collect();
-    let threshold = settings.threshold + if problem.view.normal.is_some() { ABOVE_IN_PLANE } else { 0.0 };
-    let costs = confirmed_costs(problem, &surveys[surveys.len() - 1], threshold, problem.elements(), x);
+    let threshold = problem.threshold(settings);
+    let closing = &surveys[surveys.len() - 1];
+    let costs = match begin {
+        Begin::Knowing(known) if known.factor() <= settings.survey_factor => {
+            known.costs(problem, (closing, settings.survey_factor), threshold, x)
+        }
+        _ => confirmed_costs(problem, closing, threshold, problem.elements(), x),
+    };
+    let resumed = if let Begin::From(checkpoint) = begin { Some(checkpoint) } else { None };
     let start = resumed.as_ref().map_or_else(|| Summary::of(&costs), |checkpoint| checkpoint.start);
     let mut run = Run {
         problem,

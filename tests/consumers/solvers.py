@@ -17,7 +17,7 @@ import tempfile
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
 CASES = ("weeble:23", "sphere_shell:234", "cylinder_bl:234", "torus_coarse/torus:23", "weeble_hybrid:234", "ring:234")
-ENDINGS = {"mfem": "mesh", "pyfr": "msh", "dolfinx": "msh", "ngsolve": "msh", "gmsh": "msh", "paraview": "vtu", "flexi": "h5", "su2": "su2"}
+ENDINGS = {"mfem": "mesh", "pyfr": "msh", "dolfinx": "msh", "ngsolve": "msh", "gmsh": "msh", "paraview": "vtu", "nektar": "xml", "flexi": "h5", "su2": "su2"}
 EXACT = 1e-7
 # x is in the space of the nodes, so that the solution is off by what the solver's quadrature leaves of curved elements, and no more.
 QUADRATURE = 1e-3

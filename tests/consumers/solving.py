@@ -190,6 +190,12 @@ def read_su2(path):
     return {"cells": counts, "volume": None, "areas": {}, "faces": names, "solved": "read by a script"}
 
 
+def read_nektar(path):
+    from nektar import read_nektar
+
+    return read_nektar(path)
+
+
 def read_gmsh(path):
     from readers import read_gmsh
 
@@ -202,5 +208,5 @@ def read_paraview(path):
     return {**read_vtk(path), "areas": {}, "faces": {}, "cells": {}, "solved": "read"}
 
 
-SOLVERS = {"mfem": solve_mfem, "pyfr": solve_pyfr, "dolfinx": solve_dolfinx, "ngsolve": solve_ngsolve, "flexi": read_flexi, "su2": read_su2,
+SOLVERS = {"mfem": solve_mfem, "pyfr": solve_pyfr, "dolfinx": solve_dolfinx, "ngsolve": solve_ngsolve, "flexi": read_flexi, "nektar": read_nektar, "su2": read_su2,
            "gmsh": read_gmsh, "paraview": read_paraview}

@@ -271,7 +271,7 @@ fn what_is_no_mesh_file_is_told() {
     };
     assert!(refused("empty.msh", b"").contains("the file is empty"));
     assert!(refused("part.msh", b"ISO-10303-21;\nHEADER;").contains("CAD, not a mesh"));
-    assert!(refused("grid.xml", b"<grid/>").contains("an XML file, but not a VTU mesh"));
+    assert!(refused("grid.xml", b"<grid/>").contains("an XML file, but not a VTU or Nektar++ mesh"));
     for (name, content, told) in [
         ("fluent.msh", &b"(0 \"GAMBIT to Fluent File\")\n(2 3)\n"[..], "a Fluent mesh, which is not read; export"),
         ("deck.nas", b"$ a comment\nBEGIN BULK\nGRID,1,,0.,0.,0.\n", "a Nastran bulk data file, which is not read"),
@@ -281,7 +281,7 @@ fn what_is_no_mesh_file_is_told() {
         ("grid.dat", b"TITLE = \"x\"\nVARIABLES = \"X\"\n", "a Tecplot file, which is not read"),
         ("grid.neu", b"        CONTROL INFO 2.4.6\n", "a Gambit neutral file, which is not read"),
         ("grid.xdmf", b"<?xml version=\"1.0\"?><Xdmf Version=\"3.0\">", "an XDMF file, which is not read"),
-        ("points", b"FoamFile\n{\n}\n", "a file of an OpenFOAM case, which is not read"),
+        ("points", b"FoamFile\n{\n}\n", "a file of an OpenFOAM case, but not its mesh"),
         ("grid.mesh", b"MFEM NC mesh v1.0\n", "an MFEM NC mesh of elements cut in part"),
     ] {
         let found = refused(name, content);
@@ -307,8 +307,8 @@ fn what_cannot_be_written_is_told_and_leaves_no_file() {
         told
     };
     let plain = WriteOptions::default();
-    assert!(refused("mesh.stl", &plain).contains("name it .msh, .cgns, .h5, .mfem, .meshb, .mesh, .su2 or .vtu"));
-    assert!(refused("mesh", &plain).contains("name it .msh, .cgns, .h5, .mfem, .meshb, .mesh, .su2 or .vtu"));
+    assert!(refused("mesh.stl", &plain).contains("name it .msh, .h5, .cgns, .mfem, .meshb, .mesh, .su2, .xml or .vtu"));
+    assert!(refused("mesh", &plain).contains("name it .msh, .h5, .cgns, .mfem, .meshb, .mesh, .su2, .xml or .vtu"));
     assert!(refused("none/mesh.msh", &plain).contains("cannot create: No such file"));
     let short = Field { name: "short".into(), support: Support::Elements, values: Values::Integer(vec![1, 2]) };
     let options = WriteOptions { fields: &[short], ..plain };

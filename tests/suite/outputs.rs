@@ -207,6 +207,35 @@ fn what_is_read_beside_a_mesh_is_an_input() {
 }
 
 #[test]
+fn nothing_in_the_folder_of_a_vtm_file_is_lost() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::create_dir(dir.path().join("out")).unwrap();
+    let (mesh, link) = (dir.path().join("out/cells.vtu"), dir.path().join("link.vtu"));
+    sagitta(args!["convert", SAMPLE, "-o", mesh]).expect(0);
+    symlink(&mesh, &link).unwrap();
+    let before = fs::read(&mesh).unwrap();
+    for input in [&mesh, &link] {
+        let told = sagitta(args!["convert", input, "-o", dir.path().join("out.vtm")]).expect(2).stderr;
+        assert!(told.contains("writes to the folder") && told.contains("give another name"), "{told}");
+        assert!(fs::read(&mesh).unwrap() == before);
+    }
+    sagitta(args!["convert", SAMPLE, "-o", dir.path().join("out.vtm")]).expect(0);
+}
+
+#[test]
+fn the_files_of_a_case_are_inputs() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = dir.path().join("constant/polyMesh");
+    fs::create_dir_all(&folder).unwrap();
+    for name in ["points", "faces", "owner", "neighbour", "boundary"] {
+        fs::write(folder.join(name), "precious").unwrap();
+        let told = sagitta(args!["check", dir.path(), "--report", folder.join(name)]).expect(2).stderr;
+        assert!(told.contains("is the same file as"), "{told}");
+        assert_eq!(fs::read_to_string(folder.join(name)).unwrap(), "precious");
+    }
+}
+
+#[test]
 fn what_cannot_be_written_is_refused_before_the_work() {
     let dir = tempfile::tempdir().unwrap();
     let at = |name: &str| dir.path().join(name);

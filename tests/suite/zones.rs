@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use crate::common::measure::measure;
 use crate::common::{fixture, json, number, root, sagitta};
 use tempfile::TempDir;
 
@@ -197,4 +198,83 @@ fn of_several_mesh_and_cad_files_the_given_ones_are_meant() {
         sagitta(args!["curve", renamed, "--cad", ring.cad, "--linkage", several, "--order", "2", "-q", "-o", output])
             .expect(2);
     assert!(told.stderr.contains("other.cgns, ring.x") && told.stderr.contains("third.x"), "{}", told.stderr);
+}
+
+fn sample(name: &str) -> sagitta::mesh::Mesh {
+    sagitta::formats::read(&root().join("fixtures/samples").join(name)).unwrap()
+}
+
+/// Two structured zones whose axes run differently: joined by their connection, as their points are apart by rounding.
+#[test]
+fn structured_zones_are_hexes_joined_by_their_connections() {
+    let mesh = sample("structured_zones.cgns");
+    let counts: Vec<usize> = mesh.counts().values().copied().collect();
+    assert_eq!((mesh.cells().len(), counts.len()), (2 * 8 * 4 * 2, 2), "quads and hexes: {:?}", mesh.counts());
+    assert_eq!(mesh.points().len(), 2 * 9 * 5 * 3 - 5 * 3, "one layer is common");
+    let names: Vec<&str> = mesh.zones().iter().map(|zone| zone.name.as_str()).collect();
+    assert_eq!(names, ["/Base/first", "/Base/second"]);
+    let (volume, areas) = measure(&mesh);
+    // Chords instead of arcs: sixteen triangles in the half circle.
+    let polygon = 8.0 * (std::f64::consts::PI / 16.0).sin();
+    assert!((volume - polygon * (25.0 - 0.25)).abs() < 1e-10, "{volume}");
+    let mut by_name: std::collections::BTreeMap<String, f64> = std::collections::BTreeMap::new();
+    for (key, area) in areas {
+        *by_name.entry(mesh.label(key)).or_default() += area;
+    }
+    let chord = 32.0 * (std::f64::consts::PI / 32.0).sin();
+    let close = |name: &str, wanted: f64| assert!((by_name[name] - wanted).abs() < 1e-10, "{name}: {by_name:?}");
+    close("wall", 0.5 * chord);
+    close("farfield", 5.0 * chord);
+    close("symmetry", 2.0 * 4.5);
+    // The ends of the second zone alone: the first has periodic connections there, which are told.
+    close("ends", 0.5 * polygon * (25.0 - 0.25));
+    let periodic: Vec<&String> = mesh.notes().iter().filter(|note| note.contains("periodic connection")).collect();
+    assert_eq!(periodic.len(), 2, "{:?}", mesh.notes());
+    assert!(periodic[0].contains("moved by (0, 0, 1)") && periodic[1].contains("moved by (0, 0, -1)"), "{periodic:?}");
+    assert!(
+        mesh.notes().iter().all(|note| !note.contains("renumbered") && !note.contains("ignored")),
+        "{:?}",
+        mesh.notes()
+    );
+    assert!(mesh.conditions().iter().any(|own| own.kind == "BCWallViscous"));
+}
+
+/// A plane ring of one zone that is connected to itself.
+#[test]
+fn a_structured_plane_ring_closes() {
+    let mesh = sample("structured_plane.cgns");
+    assert_eq!((mesh.cells().len(), mesh.sides().len(), mesh.points().len()), (16 * 4, 32, 16 * 5));
+    let skin = sagitta::mesh::Skin::of(&mesh);
+    assert!(skin.unmarked.is_empty() && skin.strays.is_empty());
+    let area: f64 = measure(&mesh).1.values().sum();
+    assert!((area - 8.0 * (std::f64::consts::PI / 8.0).sin() * (25.0 - 0.25)).abs() < 1e-12, "{area}");
+}
+
+/// Sizes, ranges and transforms that are none.
+#[test]
+fn damaged_structured_zones_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let spoilt = |name: &str, node: &str, values: &[i32]| {
+        let path = dir.path().join(name);
+        std::fs::copy(root().join("fixtures/samples/structured_zones.cgns"), &path).unwrap();
+        let file = hdf5_metno::File::open_rw(&path).unwrap();
+        file.dataset(&format!("Base/first/{node}")).unwrap().write_raw(values).unwrap();
+        drop(file);
+        sagitta::formats::read(&path).map_err(|error| error.to_string())
+    };
+    let told = spoilt("size.cgns", " data", &[9, 5, 3, 8, 4, 1, 0, 0, 0]).unwrap_err();
+    assert!(told.contains("/Base/first: 3 points and 1 cells along axis 3"), "{told}");
+    let told = spoilt("more.cgns", " data", &[9, 5, 400_000, 8, 4, 399_999, 0, 0, 0]).unwrap_err();
+    assert!(told.contains("the coordinate has 135 values where 18000000 are needed"), "{told}");
+    let joint = "ZoneGridConnectivity/joint";
+    let told = spoilt("axes.cgns", &format!("{joint}/Transform/ data"), &[1, 1, 3]).unwrap_err();
+    assert!(told.contains("joint: [1, 1, 3] does not map the axes"), "{told}");
+    let told = spoilt("way.cgns", &format!("{joint}/Transform/ data"), &[2, 3, 1]).unwrap_err();
+    assert!(told.contains("PointRangeDonor is no range of the zone's indices"), "{told}");
+    let told = spoilt("far.cgns", &format!("{joint}/PointRange/ data"), &[99, 1, 1, 99, 5, 3]).unwrap_err();
+    assert!(told.contains("PointRange is no range"), "{told}");
+    let told = spoilt("apart.cgns", &format!("{joint}/PointRange/ data"), &[1, 1, 1, 1, 5, 3]).unwrap_err();
+    assert!(told.contains("apart"), "{told}");
+    let mesh = spoilt("condition.cgns", "ZoneBC/wall/PointRange/ data", &[1, 1, 1, 9, 2, 3]).unwrap();
+    assert!(mesh.notes().iter().any(|note| note.contains("wall: its PointRange is no part of one layer")));
 }

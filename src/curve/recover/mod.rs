@@ -15,6 +15,7 @@
 //! faces, is inverted at P3 after 20 sweeps; by way of P2 it then comes to the CAD with C_JAC 0.35, by way of the straight mesh with
 //! 0.08 (`tests/suite/fallback.rs`).
 
+mod ahead;
 mod attempt;
 pub mod backtrack;
 mod forward;
@@ -24,5 +25,6 @@ mod recovery;
 mod release;
 mod spot;
 
+pub use ahead::release_ahead;
 pub use off_cad::{Departure, OffCadFace, off_cad_faces};
 pub use recovery::{Recovered, recover};

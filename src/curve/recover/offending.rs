@@ -2,10 +2,11 @@
 
 use rustc_hash::FxHashSet;
 
-use super::recovery::Recovery;
 use crate::associate::Classification;
+use crate::curve::level::Level;
 use crate::element::{edge_nodes, interior_start};
 use crate::mesh::{Element, ElementId, Incidence, components};
+use crate::smooth::ElementCost;
 
 /// Elements among which the wall under an element is sought.
 const SOUGHT: usize = 4096;
@@ -18,6 +19,8 @@ pub(super) enum Reach {
     Edge,
     /// All those of its wall faces that are not on CAD curves.
     Faces,
+    /// All those of its wall faces.
+    Whole,
     /// Those on CAD curves as well, and those of the wall faces around.
     Around,
 }
@@ -41,17 +44,19 @@ struct WallEdge {
     bend: f64,
 }
 
-impl Recovery<'_, '_> {
-    /// Nodes to release at some elements (rising) that are still held, rising.
-    pub(super) fn offending(&self, elements: &[ElementId], reach: Reach) -> Vec<usize> {
+/// Looks for the nodes to release at elements of a level.
+pub(super) struct Offending<'l, 'a> {
+    pub(super) level: &'l Level<'a>,
+}
+
+impl Offending<'_, '_> {
+    /// Nodes to release at some elements that are still held, rising.
+    pub(super) fn nodes(&self, elements: &[ElementId], reach: Reach) -> Vec<usize> {
         let mut marked = vec![false; self.level.curved.len()];
         let cells = self.level.mesh().cells();
         let corners = cells.iter().flat_map(|own| own.corners().iter().map(move |n| (n.index(), own.id)));
         let around = Incidence::new(self.level.elevated.linear_nodes, corners);
-        let tied = self.level.periodic.images().iter().map(|image| [image.node, image.of]);
-        for own in components(&cells, elements, tied) {
-            self.culprits(own, reach).into_iter().for_each(|e| self.mark(e, reach, &around, &mut marked));
-        }
+        elements.iter().for_each(|&e| self.mark(e, reach, &around, &mut marked));
         if reach == Reach::Around {
             self.mark_around(&mut marked);
         }
@@ -60,13 +65,19 @@ impl Recovery<'_, '_> {
         (0..marked.len()).filter(|&n| marked[n] && !self.level.wall.is_released(n)).collect()
     }
 
-    /// Those of some elements that are next to each other at which nodes are released. With one edge in reach these are the ones that have
-    /// two faces on one smooth wall, or else the worst of those on a wall, as the others may fail because of these; where none is on a
-    /// wall, all.
-    fn culprits(&self, elements: Vec<ElementId>, reach: Reach) -> Vec<ElementId> {
+    /// Those of some elements at which nodes are released. With one edge in reach these are, of elements that are next to each other, the ones
+    /// that have two faces on one smooth wall, or else the worst of those on a wall, as the others may fail because of these; where none
+    /// is on a wall, all.
+    pub(super) fn culprits(&self, elements: &[ElementId], reach: Reach, costs: &[ElementCost]) -> Vec<ElementId> {
         if reach != Reach::Edge {
-            return elements;
+            return elements.to_vec();
         }
+        let tied = self.level.periodic.images().iter().map(|image| [image.node, image.of]);
+        let parts = components(&self.level.mesh().cells(), elements, tied);
+        parts.into_iter().flat_map(|part| self.culprits_of(part, costs)).collect()
+    }
+
+    fn culprits_of(&self, elements: Vec<ElementId>, costs: &[ElementCost]) -> Vec<ElementId> {
         let cells = self.level.mesh().cells();
         let (mut cornered, mut on_wall) = (Vec::new(), Vec::new());
         for &e in &elements {
@@ -78,7 +89,7 @@ impl Recovery<'_, '_> {
                 cornered.push(e);
             }
         }
-        let cost = |e: &ElementId| self.smoothed.costs[e.index()].worst();
+        let cost = |e: &ElementId| costs[e.index()].worst();
         match on_wall.into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b))) {
             _ if !cornered.is_empty() => cornered,
             Some(worst) => vec![worst],
@@ -104,7 +115,7 @@ impl Recovery<'_, '_> {
         let mut faces = self.wall_faces(&own);
         let chosen = match reach {
             Reach::Edge => self.edge_to_release(&faces),
-            Reach::Faces | Reach::Around => None,
+            Reach::Faces | Reach::Whole | Reach::Around => None,
         };
         if faces.is_empty() {
             faces = self.faces_below(element, around);

@@ -7,14 +7,14 @@ use super::backtrack::{Fallback, backtrack};
 use super::off_cad::{OffCadFace, off_cad_faces};
 use super::spot::Spot;
 use crate::curve::below::Below;
-use crate::curve::curvability::has_impossible_corners;
+use crate::curve::curvability::impossible_corners;
 use crate::curve::level::Level;
 use crate::curve::perturb::perturb;
 use crate::curve::proof::Proof;
 use crate::curve::smoothing::smooth_level;
 use crate::element::Order;
 use crate::mesh::ElementId;
-use crate::smooth::{self, Problem, Smoothed, Watch};
+use crate::smooth::{self, Begin, Known, Problem, Smoothed, Watch};
 
 /// Rounds in which the displacement is reduced; the fraction that stays is halved from one to the next, and none is left in the
 /// last.
@@ -41,6 +41,8 @@ pub(super) struct Recovery<'l, 'a> {
     pub(super) below: Option<&'l Below>,
     /// Where walls go back to.
     pub(super) fallback: Fallback,
+    /// Costs of states that the level was in, one of each density.
+    known: Vec<Known>,
     pub(super) watch: &'l mut dyn Watch,
 }
 
@@ -55,7 +57,9 @@ pub fn recover<'l>(
 ) -> Recovered {
     let fallback = fallback(level, below);
     let order = fallback.order;
-    let mut recovery = Recovery { level, smoothed, proof, below, fallback, watch };
+    let mut recovery = Recovery { level, smoothed, proof, below, fallback, known: Vec::new(), watch };
+    let own = recovery.level.case.settings;
+    recovery.know(&own.smoothing);
     recovery.again();
     recovery.release_or_round_trip();
     recovery.back();
@@ -106,7 +110,7 @@ impl Recovery<'_, '_> {
     /// Releases wall nodes; where some end off the CAD though no corner of the wall is impossible, the way back and forward again is tried
     /// instead.
     fn release_or_round_trip(&mut self) {
-        let kept = (!self.proof.holds() && !has_impossible_corners(self.level)).then(|| self.kept());
+        let kept = (!self.proof.holds() && impossible_corners(self.level).is_empty()).then(|| self.kept());
         self.release();
         let Some(kept) = kept.filter(|_| self.proof.holds() && self.level.wall.released().next().is_some()) else {
             return;
@@ -136,12 +140,23 @@ impl Recovery<'_, '_> {
 
     /// Smooths with the wall nodes held that are off the CAD, and judges what comes out.
     pub(super) fn smooth_again(&mut self, settings: &smooth::Settings) {
-        let again = smooth_level(self.level, settings, None, self.watch);
+        let dense = self.known.iter().filter(|known| known.factor() <= settings.survey_factor);
+        let known = dense.max_by_key(|known| known.factor());
+        let again = smooth_level(self.level, settings, known.map_or(Begin::Anew, Begin::Knowing), self.watch);
         self.smoothed.sweeps += again.sweeps;
         self.smoothed.stopped |= again.stopped;
         self.smoothed.costs = again.costs;
         self.smoothed.end = again.end;
+        self.know(settings);
         self.proof = Proof::of(self.level);
+    }
+
+    /// Keeps the costs of the level as it is, which were smoothed to with these settings.
+    fn know(&mut self, settings: &smooth::Settings) {
+        let problem = Problem::new(self.level.mesh(), self.level.straight());
+        let known = Known::of(&problem, settings, self.level.curved.clone(), self.smoothed.costs.clone());
+        self.known.retain(|own| own.factor() != known.factor());
+        self.known.push(known);
     }
 
     /// Takes the displacement back around the elements that fail.

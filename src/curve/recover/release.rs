@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::offending::Reach;
+use super::offending::{Offending, Reach};
 use super::recovery::Recovery;
 use crate::curve::start::start;
 use crate::mesh::ElementId;
@@ -37,14 +37,17 @@ const MOST_OF_ALL: f64 = 2e-3;
 const RINGS: usize = 6;
 
 impl Recovery<'_, '_> {
-    /// Releases wall nodes at the elements that fail or are below the floor; where that does not end in a proof, nothing is changed.
+    /// Releases wall nodes at the elements that fail or are below the floor, and takes what is released as near to the CAD as it goes; where
+    /// that does not end in a proof, nothing is changed.
     pub(super) fn release(&mut self) {
-        let poor = self.below(self.level.case.settings.floor).len();
+        let floor = self.level.case.settings.floor;
+        let poor = self.below(floor).len();
         let local = MOST.max((MOST_OF_ALL * self.smoothed.costs.len() as f64) as usize);
-        if poor == 0 || poor > local || self.smoothed.stopped {
+        let nothing = poor == 0 && self.level.wall.released().next().is_none();
+        if nothing || poor > local || self.smoothed.stopped {
             return;
         }
-        let had = if self.proof.holds() { self.smoothed.end.worst() } else { 0.0 };
+        let had = if self.proof.holds() { self.smoothed.end.worst().min(floor) } else { 0.0 };
         let _ = self.attempt(had.max(0.0), |recovery| {
             recovery.release_step_by_step();
             recovery.draw();
@@ -60,7 +63,8 @@ impl Recovery<'_, '_> {
             if poor.is_empty() || self.smoothed.stopped {
                 break;
             }
-            let nodes = self.offending(&poor, reach);
+            let offending = Offending { level: self.level };
+            let nodes = offending.nodes(&offending.culprits(&poor, reach, &self.smoothed.costs), reach);
             if !nodes.is_empty() {
                 nodes.iter().for_each(|&n| self.level.wall.release(n));
                 self.begin_anew(&poor);
@@ -83,8 +87,7 @@ impl Recovery<'_, '_> {
     }
 
     fn draw_nodes(&mut self, nodes: &[usize], draws: usize) {
-        let own = &self.level.case.settings.smoothing;
-        let settings = smooth::Settings { threshold: ENOUGH.min(own.threshold), ..self.closer() };
+        let settings = self.calmly();
         let least = self.smoothed.end.worst().min(ENOUGH).max(self.floor());
         let mut step = DRAW;
         for _ in 0..draws {
@@ -101,6 +104,12 @@ impl Recovery<'_, '_> {
                 step *= DRAW;
             }
         }
+    }
+
+    /// Settings that smooth until the costs beside nodes that are drawn or put back are good enough.
+    fn calmly(&self) -> smooth::Settings {
+        let own = &self.level.case.settings.smoothing;
+        smooth::Settings { threshold: ENOUGH.min(own.threshold), ..self.closer() }
     }
 
     /// Released nodes that hang together by wall faces.
@@ -142,9 +151,16 @@ impl Recovery<'_, '_> {
         nodes.iter().zip(places).for_each(|(&n, place)| self.level.wall.displace(n, place));
     }
 
-    /// Puts released nodes back on the CAD that hardly left it, as many as can be.
+    /// Puts released nodes back on the CAD: spot by spot where nodes that slide make room for them, then those that hardly left it, as many as
+    /// can be.
     fn reattach(&mut self) {
-        let own = &self.level.case.settings.smoothing;
+        let released: Vec<usize> = self.level.wall.released().collect();
+        let spots = self.spots(&released);
+        if spots.len() <= SPOTS {
+            for spot in &spots {
+                self.put_back(spot);
+            }
+        }
         for share in HARDLY {
             if !self.proof.holds() || self.smoothed.stopped {
                 break;
@@ -154,19 +170,21 @@ impl Recovery<'_, '_> {
                 self.level.curved[*n].distance(place) < share * self.level.wall.displacement(*n).length()
             };
             let nodes: Vec<usize> = self.level.wall.released().filter(left).collect();
-            let settings = smooth::Settings { threshold: ENOUGH.min(own.threshold), ..self.closer() };
-            if nodes.is_empty() {
-                break;
-            }
-            let tried = self.attempt(self.floor(), |recovery| {
-                recovery.move_to_cad(&nodes, 1.0);
-                nodes.iter().for_each(|&n| recovery.level.wall.reattach(n));
-                recovery.smooth_again(&settings);
-            });
-            if tried.is_ok() {
+            if nodes.is_empty() || self.put_back(&nodes) {
                 break;
             }
         }
+    }
+
+    /// Puts released nodes back on the CAD; whether they could stay there.
+    fn put_back(&mut self, nodes: &[usize]) -> bool {
+        let settings = self.calmly();
+        let tried = self.attempt(self.floor(), |recovery| {
+            recovery.move_to_cad(nodes, 1.0);
+            nodes.iter().for_each(|&n| recovery.level.wall.reattach(n));
+            recovery.smooth_again(&settings);
+        });
+        tried.is_ok()
     }
 
     /// The floor, or what the smallest cost is where that is less.
@@ -188,16 +206,11 @@ impl Recovery<'_, '_> {
     /// from a valid mesh, not from one that was bent to make room for what cannot be.
     fn begin_anew(&mut self, poor: &[ElementId]) {
         let released: Vec<usize> = self.level.wall.released().collect();
-        let places: Vec<DVec3> = released.iter().map(|&n| self.level.wall.displacement(n)).collect();
-        for &n in &released {
-            self.level.wall.displace(n, self.fallback.positions[n] - self.level.straight()[n]);
-        }
         let begin = start(self.level, self.below);
         let near = self.nodes_around(poor, &released);
         for ((x, begin), _) in self.level.curved.iter_mut().zip(begin).zip(near).filter(|(_, near)| *near) {
             *x = begin;
         }
-        released.iter().zip(places).for_each(|(&n, place)| self.level.wall.displace(n, place));
     }
 
     /// Marks the nodes within some rings of elements around elements and nodes.

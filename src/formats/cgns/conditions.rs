@@ -7,6 +7,7 @@ use rustc_hash::FxHashMap;
 use super::labels;
 use super::sections::Section;
 use super::skin;
+use super::structured::{Faces, Grid};
 use super::tree::{Ints, Tree};
 use super::zone::Zone;
 use crate::element::Cell;
@@ -106,6 +107,8 @@ pub(super) struct Conditions<'a> {
     by_vertices: Vec<(usize, HashSet<NodeId>)>,
     /// Conditions that list what is not there: their path, and how many numbers.
     beyond: Vec<(String, u64)>,
+    /// Conditions of structured zones whose ranges are no part of a layer: their paths.
+    ranges: Vec<String>,
 }
 
 impl<'a> Conditions<'a> {
@@ -119,6 +122,7 @@ impl<'a> Conditions<'a> {
             used: HashSet::new(),
             by_vertices: Vec::new(),
             beyond: Vec::new(),
+            ranges: Vec::new(),
         }
     }
 
@@ -159,6 +163,38 @@ impl<'a> Conditions<'a> {
             }
         }
         Ok(covered)
+    }
+
+    /// The entity of a structured zone's cells.
+    pub(super) fn entity_of_cells(&mut self, zone: &Zone) -> EntityKey {
+        let patch = self.uncovered(zone.tree, self.families.of(zone.tree));
+        self.entity_of(patch, self.dimension)
+    }
+
+    /// The entities of a structured zone's conditions, each with the corners of its faces; a face is in the first that covers it.
+    pub(super) fn of_grid(&mut self, zone: &Zone, grid: &Grid) -> Result<Vec<(EntityKey, Faces)>, Flaw> {
+        let mut found = Vec::new();
+        let mut taken: HashSet<Vec<usize>> = HashSet::new();
+        for node in zone.tree.all(labels::ZONE_BC).flat_map(|parent| parent.all(labels::BC)) {
+            self.patches.push(self.patch(node));
+            let patch = self.patches.len() - 1;
+            let location = node.child(labels::LOCATION).map_or_else(|| "Vertex".to_owned(), Tree::text);
+            let range = node.named(labels::RANGE, "PointRange");
+            let range = range.map(Tree::ints).transpose()?.and_then(|numbers| grid.range(numbers));
+            let Some(mut faces) = range.and_then(|range| grid.faces(range, &location)) else {
+                self.ranges.push(node.path.clone());
+                continue;
+            };
+            faces.retain(|face| {
+                let mut corners = face.clone();
+                corners.sort_unstable();
+                taken.insert(corners)
+            });
+            if !faces.is_empty() {
+                found.push((self.entity_of(patch, self.dimension - 1), faces));
+            }
+        }
+        Ok(found)
     }
 
     fn patch(&self, node: &Tree) -> Patch {
@@ -248,6 +284,9 @@ impl<'a> Conditions<'a> {
                 "{path}: {count} of the numbers that it lists are of no element or vertex of the zone; ignored"
             );
             assembly.parts.notes.push(note);
+        }
+        for path in &self.ranges {
+            assembly.parts.notes.push(format!("{path}: its PointRange is no part of one layer of the zone; ignored"));
         }
         assembly.parts.physical_names.sort_by_key(|name| (name.dimension, name.tag));
     }

@@ -27,6 +27,9 @@ pub(super) fn room(length: u64, memory: u64) -> u64 {
     ROOM.saturating_add(length.saturating_mul(EXPANSION)).min(memory)
 }
 
+/// Characters in which texts of fixed length are handed on.
+const NAME: usize = 255;
+
 /// Opens a file for reading; without a lock, as nobody writes to it and some file systems have none.
 pub(super) fn open(path: &Path) -> hdf5::Result<hdf5::File> {
     hdf5::FileBuilder::new().with_fapl(|access| access.file_locking(false)).open(path)
@@ -131,7 +134,19 @@ impl<W: Write, V: FnMut(&str)> Dump<'_, W, V> {
             }
             self.path.truncate(parent);
         }
-        self.out.write_all(&(useful.len() as u64).to_le_bytes())?;
+        let arrays = if depth == 0 { self.hopr(group)? } else { Vec::new() };
+        self.out.write_all(&((useful.len() + arrays.len()) as u64).to_le_bytes())?;
+        for (name, array) in arrays {
+            let parent = self.enter(name);
+            self.bytes(name.as_bytes())?;
+            self.bytes(labels::HOPR.as_bytes())?;
+            match array {
+                Some(set) => self.values(&set)?,
+                None => self.array(kind::INT, bytemuck::cast_slice(&group.attr(name)?.read_raw::<i32>()?))?,
+            }
+            self.out.write_all(&0_u64.to_le_bytes())?;
+            self.path.truncate(parent);
+        }
         for (name, label, child) in useful {
             let parent = self.enter(&name);
             let child = self.target(child)?;
@@ -142,6 +157,22 @@ impl<W: Write, V: FnMut(&str)> Dump<'_, W, V> {
             self.path.truncate(parent);
         }
         Ok(())
+    }
+
+    /// The arrays of a HOPR file, where it is one; the order of its elements is an attribute.
+    fn hopr(&mut self, root: &hdf5::Group) -> Result<Vec<(&'static str, Option<hdf5::Dataset>)>, Stop> {
+        let mut arrays = Vec::new();
+        for name in labels::HOPR_ARRAYS {
+            if link_of(root, name)? == Some(LinkType::Hard)
+                && let Ok(set) = root.dataset(name)
+            {
+                arrays.push((name, Some(set)));
+            }
+        }
+        if !arrays.is_empty() && root.attr("Ngeo").is_ok() {
+            arrays.push(("Ngeo", None));
+        }
+        Ok(arrays)
     }
 
     /// Goes to a child; the length of the path of its parent.
@@ -198,6 +229,11 @@ impl<W: Write, V: FnMut(&str)> Dump<'_, W, V> {
             Some(_) => return Err(elsewhere("an array")),
         }
         let Ok(set) = group.dataset(" data") else { return Ok(self.array(kind::NONE, &[])?) };
+        self.values(&set)
+    }
+
+    /// Writes an array.
+    fn values(&mut self, set: &hdf5::Dataset) -> Result<(), Stop> {
         let storage = set.dcpl()?;
         if !storage.get_external()?.is_empty() || storage.get_layout()? == Layout::Virtual {
             return Err(elsewhere("an array with bytes"));
@@ -217,6 +253,15 @@ impl<W: Write, V: FnMut(&str)> Dump<'_, W, V> {
             }
             TypeDescriptor::Float(_) => {
                 self.array(kind::REAL, bytemuck::cast_slice(&set.read_raw::<f64>()?))?;
+            }
+            TypeDescriptor::FixedAscii(_) => {
+                let texts = set.read_raw::<FixedAscii<NAME>>()?;
+                let padded = |text: &FixedAscii<NAME>| {
+                    let mut bytes = text.as_bytes().to_vec();
+                    bytes.resize(NAME, b' ');
+                    bytes
+                };
+                self.array(kind::TEXT, &texts.iter().flat_map(padded).collect::<Vec<u8>>())?;
             }
             _ => self.array(kind::NONE, &[])?,
         }

@@ -35,8 +35,18 @@ pub(super) enum CgnsFault {
     NoZone,
     #[error("the base has cells of dimension {0}; 2 and 3 are read")]
     Dimension(i64),
-    #[error("a zone of type {0:?}; only unstructured zones are read: export the mesh as unstructured")]
+    #[error("a zone of type {0:?}; structured and unstructured zones are read")]
     ZoneType(String),
+    #[error(
+        "{points} points and {cells} cells along axis {axis} are no size of a structured zone: the file is damaged"
+    )]
+    Size { axis: usize, points: i64, cells: i64 },
+    #[error("{0} is no range of the zone's indices, or does not match the other zone's: the file is damaged")]
+    IndexRange(&'static str),
+    #[error("joins points that are up to {0:.1e} apart: its ranges or its Transform are wrong")]
+    Apart(f64),
+    #[error("{0:?} does not map the axes of one zone to those of another: the file is damaged")]
+    Transform(Vec<i64>),
     #[error("{what} has {found} values where {needed} are needed: the file is damaged")]
     Length { what: &'static str, found: usize, needed: u64 },
     #[error("the zone counts {needed} cells, and its sections have {found}: the file is damaged")]

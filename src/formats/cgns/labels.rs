@@ -20,10 +20,18 @@ pub(super) const LOCATION: &str = "GridLocation_t";
 pub(super) const CONNECTIVITY: &str = "ZoneGridConnectivity_t";
 pub(super) const GENERAL_CONNECTION: &str = "GridConnectivity_t";
 pub(super) const DIRECT_CONNECTION: &str = "GridConnectivity1to1_t";
+pub(super) const TRANSFORM: &str = "int[IndexDimension]";
+pub(super) const PERIODIC: &str = "Periodic_t";
 pub(super) const CONNECTION_PROPERTY: &str = "GridConnectivityProperty_t";
 
+/// What stands in place of a label for arrays of HOPR's files, which have none.
+pub(in crate::formats) const HOPR: &str = "HOPR";
+
+/// Those arrays: all that is read of them.
+pub(super) const HOPR_ARRAYS: [&str; 6] = ["BCNames", "BCType", "ElemInfo", "GlobalNodeIDs", "NodeCoords", "SideInfo"];
+
 /// Everything that the reading child hands on.
-pub(super) const READ: [&str; 21] = [
+pub(super) const READ: [&str; 23] = [
     VERSION,
     BASE,
     FAMILY,
@@ -45,6 +53,8 @@ pub(super) const READ: [&str; 21] = [
     GENERAL_CONNECTION,
     DIRECT_CONNECTION,
     CONNECTION_PROPERTY,
+    TRANSFORM,
+    PERIODIC,
 ];
 
 /// Nodes that are not handed on, as nothing here needs their arrays.

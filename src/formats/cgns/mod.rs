@@ -1,4 +1,4 @@
-//! CGNS (HDF5), unstructured zones.
+//! CGNS (HDF5): unstructured zones, and structured ones as hexes or quadrilaterals.
 //!
 //! A file is a tree of nodes with a name, a label and an array. The HDF5 library, which some malformed files make crash or hang,
 //! turns it into plain bytes and does nothing else (`dump`): in this process, or, where [`ReadOptions::reader`] names a program,
@@ -16,6 +16,7 @@ mod node;
 mod read;
 mod sections;
 mod skin;
+mod structured;
 mod tree;
 mod type_code;
 mod write;
@@ -34,6 +35,8 @@ use fault::CgnsFault;
 
 pub use child::{READER_SUBCOMMAND, serve_reader};
 pub(super) use dump::create;
+pub(super) use labels::HOPR;
+pub(super) use tree::Tree;
 
 /// CGNS on HDF5.
 pub(super) static FORMAT: Format = Format {
@@ -42,7 +45,7 @@ pub(super) static FORMAT: Format = Format {
     detect,
     reader: Some(Reader {
         holds: Holds {
-            notes: "unstructured zones; one type a section or MIXED, with or without offsets; conditions by list, range, \
+            notes: "unstructured zones, structured ones as hexes and quads; one type a section or MIXED, with or without offsets; conditions by list, range, \
                     vertices, family; zones joined; ADF where adf2hdf is installed",
             ..HOLDS
         },
@@ -54,6 +57,7 @@ pub(super) static FORMAT: Format = Format {
             ..HOLDS
         },
         loses: &[Loss::Lower, Loss::NodeNumbers, Loss::Periodic, Loss::Parameters, Loss::Zones],
+        held: None,
         write: |part, mesh, _| write::write(part.path(), mesh),
     }),
 };
@@ -73,19 +77,38 @@ fn detect(head: &Head) -> Verdict {
 /// # Errors
 /// [`Error`]. With a reader also where the HDF5 library crashes or hangs, which happens to the child only.
 fn read(input: Input, options: &ReadOptions) -> Result<Mesh, Error> {
-    let Input { path, length, head, content } = input;
-    drop(content); // the library opens files itself
-    if adf::is(&head) {
+    if adf::is(&input.head) {
+        let Input { path, length, .. } = input;
         let rewritten = adf::rewritten(path, length, options.memory())?;
-        let mut mesh = hdf5(path, rewritten.path(), length, options)?;
+        let mut mesh = hdf5(path, rewritten.path(), length, options, read::mesh)?;
         mesh.note("the file was rewritten from the old ADF form by adf2hdf".into());
         return Ok(mesh);
     }
-    hdf5(path, path, length, options)
+    with_tree(input, options, read::mesh)
+}
+
+/// Makes a mesh of the tree of a file on HDF5.
+///
+/// # Errors
+/// Those of reading, and of `make`.
+pub(super) fn with_tree(
+    input: Input,
+    options: &ReadOptions,
+    make: fn(&Tree) -> Result<Mesh, Flaw>,
+) -> Result<Mesh, Error> {
+    let Input { path, length, content, .. } = input;
+    drop(content); // the library opens files itself
+    hdf5(path, path, length, options, make)
 }
 
 /// Reads the mesh of the user's file `path` of `length` bytes, which stands in `file`.
-fn hdf5(path: &Path, file: &Path, length: u64, options: &ReadOptions) -> Result<Mesh, Error> {
+fn hdf5(
+    path: &Path,
+    file: &Path,
+    length: u64,
+    options: &ReadOptions,
+    make: fn(&Tree) -> Result<Mesh, Flaw>,
+) -> Result<Mesh, Error> {
     let refused = |reason: String| Error::Format { file: path.to_path_buf(), reason };
     let bytes = match &options.reader {
         Some(program) => child::ask(program, path, file, length, options.memory())?,
@@ -103,5 +126,5 @@ fn hdf5(path: &Path, file: &Path, length: u64, options: &ReadOptions) -> Result<
             refused("the reading process gave no whole answer; does it call cgns::serve_reader?".into())
         }
     })?;
-    read::mesh(&tree).map_err(|flaw| flaw.of(path))
+    make(&tree).map_err(|flaw| flaw.of(path))
 }

@@ -7,6 +7,7 @@ use super::connections::{self, Joined};
 use super::fault::CgnsFault;
 use super::labels;
 use super::sections::sections;
+use super::structured::Grid;
 use super::tree::Tree;
 use super::zone::Zone;
 use crate::formats::assembly::{Assembly, node_of};
@@ -29,7 +30,7 @@ pub(super) fn mesh(tree: &Tree) -> Result<Mesh, Flaw> {
     let mut zones = Vec::new();
     let mut start = 0;
     for node in base.all(labels::ZONE) {
-        let zone = zone(node, start, plane)?;
+        let zone = zone(node, start, plane, dimension.into())?;
         start += zone.points.len();
         zones.push(zone);
     }
@@ -48,6 +49,10 @@ pub(super) fn mesh(tree: &Tree) -> Result<Mesh, Flaw> {
     let mut tags = 0;
     for zone in &zones {
         let nodes = &nodes[zone.start..zone.start + zone.points.len()];
+        if let Some(grid) = &zone.grid {
+            tags += structured(&mut assembly, zone, grid, nodes, &mut conditions)?;
+            continue;
+        }
         let labels = conditions.of_zone(zone, nodes)?;
         elements(&mut assembly, zone, nodes, &labels, &mut conditions, tags)?;
         tags += zone.sections.last().map_or(0, |section| section.first + section.count as u64 - 1);
@@ -63,12 +68,17 @@ pub(super) fn mesh(tree: &Tree) -> Result<Mesh, Flaw> {
 }
 
 /// A zone, whose nodes begin at `start`; in a plane they have no third coordinate.
-fn zone<'a>(tree: &'a Tree<'a>, start: usize, plane: bool) -> Result<Zone<'a>, Flaw> {
+fn zone<'a>(tree: &'a Tree<'a>, start: usize, plane: bool, dimension: usize) -> Result<Zone<'a>, Flaw> {
     let kind = tree.child(labels::ZONE_TYPE).map(Tree::text).unwrap_or_default();
-    if kind != "Unstructured" {
-        return Err(tree.flaw(CgnsFault::ZoneType(kind)));
-    }
-    let count = tree.ints()?.get(0).and_then(|n| usize::try_from(n).ok()).unwrap_or(0);
+    let grid = match kind.as_str() {
+        "Unstructured" => None,
+        "Structured" => Some(Grid::new(tree, dimension)?),
+        _ => return Err(tree.flaw(CgnsFault::ZoneType(kind))),
+    };
+    let count = match &grid {
+        Some(grid) => grid.points(),
+        None => tree.ints()?.get(0).and_then(|n| usize::try_from(n).ok()).unwrap_or(0),
+    };
     let coordinates = tree.required(labels::COORDINATES, "GridCoordinates")?;
     let mut points = Vec::new();
     for (axis, name) in ["CoordinateX", "CoordinateY", "CoordinateZ"].into_iter().enumerate() {
@@ -88,8 +98,11 @@ fn zone<'a>(tree: &'a Tree<'a>, start: usize, plane: bool) -> Result<Zone<'a>, F
         points.resize(count, DVec3::ZERO);
         points.iter_mut().zip(values.iter()).for_each(|(point, &x)| point[axis] = x);
     }
-    let cells = tree.ints()?.get(1).and_then(|n| u64::try_from(n).ok());
-    Ok(Zone { tree, start, points, cells, sections: sections(tree)? })
+    let (cells, sections) = match &grid {
+        Some(_) => (None, Vec::new()),
+        None => (tree.ints()?.get(1).and_then(|n| u64::try_from(n).ok()), sections(tree)?),
+    };
+    Ok(Zone { tree, start, points, cells, sections, grid })
 }
 
 /// The points of all zones, each once; and the node of every point of every zone.
@@ -109,6 +122,28 @@ fn merged(zones: &[Zone], joined: &mut Joined) -> (Vec<DVec3>, Vec<NodeId>) {
         }
     }
     (points, nodes)
+}
+
+/// Adds the cells of a structured zone, and the faces that its conditions cover; how many they are.
+fn structured(
+    assembly: &mut Assembly,
+    zone: &Zone,
+    grid: &Grid,
+    nodes: &[NodeId],
+    conditions: &mut Conditions,
+) -> Result<u64, Flaw> {
+    let entity = conditions.entity_of_cells(zone);
+    let placed = |corners: &[usize]| corners.iter().map(|&corner| nodes[corner]).collect::<Vec<NodeId>>();
+    let mut count = 0;
+    for corners in grid.cells() {
+        assembly.push(grid.cell(), entity, &placed(&corners));
+        count += 1;
+    }
+    for (entity, faces) in conditions.of_grid(zone, grid)? {
+        faces.iter().for_each(|corners| assembly.push(grid.side(), entity, &placed(corners)));
+        count += faces.len() as u64;
+    }
+    Ok(count)
 }
 
 /// Adds a zone's elements, numbered as in the file, behind those of the zones before.

@@ -12,7 +12,7 @@ const DEEPEST: usize = 64;
 
 /// A node: its name, label, array and children.
 #[derive(Debug)]
-pub(super) struct Tree<'a> {
+pub(in crate::formats) struct Tree<'a> {
     pub(super) path: String,
     pub(super) name: &'a str,
     pub(super) label: &'a str,
@@ -45,7 +45,7 @@ impl<'a> Tree<'a> {
     }
 
     /// A fault in this node.
-    pub(super) fn flaw(&self, fault: impl Into<Fault>) -> Flaw {
+    pub(in crate::formats) fn flaw(&self, fault: impl Into<Fault>) -> Flaw {
         Flaw::new(Place::Node(self.path.clone()), fault)
     }
 
@@ -65,7 +65,7 @@ impl<'a> Tree<'a> {
     }
 
     /// The child with a label and a name, which must be there.
-    pub(super) fn required(&self, label: &'static str, name: &'static str) -> Result<&Tree<'a>, Flaw> {
+    pub(in crate::formats) fn required(&self, label: &'static str, name: &'static str) -> Result<&Tree<'a>, Flaw> {
         self.named(label, name).ok_or_else(|| self.flaw(CgnsFault::Missing { label, name }))
     }
 
@@ -76,8 +76,13 @@ impl<'a> Tree<'a> {
         names::text(&text[..end]).trim_end().to_owned()
     }
 
+    /// The array as characters.
+    pub(in crate::formats) fn bytes(&self) -> &'a [u8] {
+        if self.kind == kind::TEXT { self.data } else { &[] }
+    }
+
     /// The array as whole numbers.
-    pub(super) fn ints(&self) -> Result<Ints<'a>, Flaw> {
+    pub(in crate::formats) fn ints(&self) -> Result<Ints<'a>, Flaw> {
         match self.kind {
             kind::INT | kind::LONG => Ok(Ints { data: self.data, long: self.kind == kind::LONG }),
             _ => Err(self.flaw(CgnsFault::NotNumbers("whole numbers"))),
@@ -85,7 +90,7 @@ impl<'a> Tree<'a> {
     }
 
     /// The array as real numbers; whole numbers are taken too.
-    pub(super) fn reals(&self) -> Result<Cow<'_, [f64]>, Flaw> {
+    pub(in crate::formats) fn reals(&self) -> Result<Cow<'_, [f64]>, Flaw> {
         match self.kind {
             kind::REAL => Ok(self.data.chunks_exact(8).map(|x| f64::from_le_bytes(eight(x))).collect()),
             kind::INT | kind::LONG => Ok(self.ints()?.iter().map(|x| x as f64).collect()),
@@ -96,19 +101,19 @@ impl<'a> Tree<'a> {
 
 /// Whole numbers of 4 or 8 bytes.
 #[derive(Clone, Copy)]
-pub(super) struct Ints<'a> {
+pub(in crate::formats) struct Ints<'a> {
     data: &'a [u8],
     long: bool,
 }
 
 impl<'a> Ints<'a> {
     /// How many.
-    pub(super) fn len(self) -> usize {
+    pub(in crate::formats) fn len(self) -> usize {
         self.data.len() / if self.long { 8 } else { 4 }
     }
 
     /// The number at a place.
-    pub(super) fn get(self, n: usize) -> Option<i64> {
+    pub(in crate::formats) fn get(self, n: usize) -> Option<i64> {
         if self.long {
             self.data.get(8 * n..8 * n + 8).map(|x| i64::from_le_bytes(eight(x)))
         } else {
@@ -118,7 +123,7 @@ impl<'a> Ints<'a> {
     }
 
     /// All of them.
-    pub(super) fn iter(self) -> impl Iterator<Item = i64> + 'a {
+    pub(in crate::formats) fn iter(self) -> impl Iterator<Item = i64> + 'a {
         (0..self.len()).filter_map(move |n| self.get(n))
     }
 }

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::sections::Section;
+use super::structured::Grid;
 use super::tree::Tree;
 use crate::formats::assembly::node_of;
 use crate::formats::error::Fault;
@@ -16,6 +17,8 @@ pub(super) struct Zone<'a> {
     /// Number of its cells, as it says.
     pub(super) cells: Option<u64>,
     pub(super) sections: Vec<Section<'a>>,
+    /// Its indices, where it is structured.
+    pub(super) grid: Option<Grid>,
 }
 
 impl Zone<'_> {

@@ -45,6 +45,7 @@ pub(super) static FORMAT: Format = Format {
             ..HOLDS
         },
         loses: &[Loss::NodeNumbers, Loss::Names, Loss::Periodic, Loss::Conditions, Loss::Zones],
+        held: None,
         write: |part, mesh, _| {
             let binary = !part.is_named("mesh");
             part.stream(|out| write::write(out, mesh, binary))

@@ -8,7 +8,7 @@ use crate::element::Cell;
 use crate::mesh::{Block, EntityKey, FaceKey, Mesh, NodeId, PhysicalName};
 
 /// Corner loops of an element's sides in HOPR's order, which is that of CGNS; their normals point outward.
-fn loops(cell: Cell) -> &'static [&'static [u8]] {
+pub(super) fn loops(cell: Cell) -> &'static [&'static [u8]] {
     match cell {
         Cell::Tet => &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[2, 0, 3]],
         Cell::Pyramid => &[&[0, 3, 2, 1], &[0, 1, 4], &[1, 2, 4], &[2, 3, 4], &[3, 0, 4]],

@@ -6,8 +6,9 @@ use hdf5_metno as hdf5;
 use hdf5_metno::H5Type;
 use hdf5_metno::types::FixedAscii;
 
+use super::rows;
 use super::sides::{self, Sides};
-use crate::element::{Cell, Order, Tables, lattice};
+use crate::element::{Cell, Order};
 use crate::formats::cgns::create;
 use crate::formats::part::Unwritten;
 use crate::mesh::Mesh;
@@ -122,17 +123,6 @@ fn side_info(file: &hdf5::File, order: Order, sides: &Sides) -> Result<(), Unwri
     raw(file, "BCType", &[names.len(), 4], &kinds)
 }
 
-/// For each place of an element's nodes row by row, the first axis fastest, the node in internal order.
-fn rows(cell: Cell, order: Order) -> &'static [usize] {
-    static TABLES: Tables<Vec<usize>> = Tables::new();
-    TABLES.get(cell, order, || {
-        let nodes = lattice(cell, order);
-        let mut places: Vec<usize> = (0..nodes.len()).collect();
-        places.sort_by_key(|&n| [nodes[n][2], nodes[n][1], nodes[n][0]]);
-        places
-    })
-}
-
 /// `NodeCoords` and `GlobalNodeIDs`; how many different nodes there are. They are numbered in their order, from 1, without gaps.
 fn nodes_of(file: &hdf5::File, mesh: &Mesh, count: usize) -> Result<usize, Unwritten> {
     let mut used = vec![0i32; mesh.points().len()];
@@ -144,7 +134,7 @@ fn nodes_of(file: &hdf5::File, mesh: &Mesh, count: usize) -> Result<usize, Unwri
     }
     let (mut points, mut numbers) = (Vec::with_capacity(3 * count), Vec::with_capacity(count));
     for cell in mesh.cells().iter() {
-        for &slot in rows(cell.cell, mesh.order()) {
+        for &slot in rows::of(cell.cell, mesh.order()) {
             let node = cell.nodes[slot].index();
             points.extend(mesh.points()[node].to_array());
             numbers.push(used[node]);

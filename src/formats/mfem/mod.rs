@@ -54,6 +54,7 @@ pub(super) static FORMAT: Format = Format {
             Loss::Parameters,
             Loss::Zones,
         ],
+        held: None,
         write: |part, mesh, _| part.stream(|out| write::write(out, mesh)),
     }),
 };

@@ -54,6 +54,7 @@ pub(super) static FORMAT: Format = Format {
     writer: Some(Writer {
         holds: Holds { notes: "4.1, `--msh-version 2.2`, `--ascii`; fields as views by `curve --msh-views`", ..HOLDS },
         loses: &[Loss::Conditions, Loss::Zones],
+        held: None,
         write: |part, mesh, options| part.stream(|out| write(out, mesh, options)),
     }),
 };

@@ -6,7 +6,7 @@ use crate::element::Cell;
 #[cfg(feature = "cgns")]
 use crate::formats::hopr;
 use crate::formats::options::{Encoding, Version};
-use crate::formats::{mfem, msh, su2, vtk};
+use crate::formats::{mfem, msh, nektar, su2, vtk};
 use crate::mesh::Mesh;
 
 const ALL: &[(Cell, usize)] =
@@ -88,6 +88,25 @@ pub static SOLVERS: &[Solver] = &[
                 ..MSH
             },
         ],
+    },
+    Solver {
+        name: "nektar",
+        title: "Nektar++ 5",
+        intakes: &[Intake {
+            format: &nektar::FORMAT,
+            endings: &["xml"],
+            cells: &[
+                (Cell::Triangle, 4),
+                (Cell::Quad, 4),
+                (Cell::Tet, 4),
+                (Cell::Pyramid, 2),
+                (Cell::Prism, 4),
+                (Cell::Hex, 4),
+            ],
+            groups: Some(ONE_EACH),
+            notes: "geometry, composites and an expansion of the mesh's order; nodes inside cells follow from the faces",
+            ..MSH
+        }],
     },
     Solver {
         name: "ngsolve",

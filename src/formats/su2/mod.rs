@@ -47,6 +47,7 @@ pub(super) static FORMAT: Format = Format {
             Loss::Conditions,
             Loss::Parameters,
         ],
+        held: None,
         write: |part, mesh, _| part.stream(|out| write::write(out, mesh)),
     }),
 };

@@ -17,9 +17,14 @@ use crate::mesh::Mesh;
 /// Characters of a patch's name that its file's name has.
 const NAME: usize = 60;
 
+/// The folder of the blocks.
+pub(in crate::formats) fn folder_of(path: &Path) -> PathBuf {
+    path.with_extension("")
+}
+
 /// Writes the blocks of a mesh beside a file; the text that names them. A block has the fields that have a value everywhere in it.
 pub(super) fn write(path: &Path, mesh: &Mesh, fields: &[Field]) -> Result<String, Unwritten> {
-    let folder = path.with_extension("");
+    let folder = folder_of(path);
     let Some(name) = folder.file_name().map(PathBuf::from) else {
         return Err(Unwritten::Inexpressible("its name has nothing before the ending".to_owned()));
     };

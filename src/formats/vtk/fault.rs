@@ -35,8 +35,6 @@ pub(super) enum VtkFault {
         "cell {tag} is a Lagrange hex, whose order of nodes depends on the version, and the file says none (version of VTKFile)"
     )]
     NoVersion { tag: u64 },
-    #[error("the XML is damaged: {0}")]
-    Xml(String),
 }
 
 crate::formats::error::own!(VtkFault);

@@ -12,7 +12,6 @@ mod header;
 mod legacy;
 pub(super) mod node_order;
 pub(super) mod type_code;
-mod well_formed;
 mod write;
 mod written;
 mod xml;
@@ -23,6 +22,7 @@ use super::detect::{Head, Refusal, Verdict};
 use super::format::{Format, Holds, Reader, Writer};
 use super::loss::Loss;
 use crate::element::{Cell, Order};
+pub(super) use collection::folder_of;
 
 /// VTK's XML form of unstructured grids.
 pub(super) static VTU: Format = Format {
@@ -47,6 +47,7 @@ pub(super) static VTU: Format = Format {
             ..HOLDS
         },
         loses: LOSES,
+        held: None,
         write: |part, mesh, options| part.stream(|out| write::write(out, mesh, options.fields, options.volume_only)),
     }),
 };
@@ -65,6 +66,7 @@ pub(super) static VTM: Format = Format {
             ..HOLDS
         },
         loses: LOSES,
+        held: None,
         write: |part, mesh, options| {
             let text = collection::write(part.name(), mesh, options.fields)?;
             part.stream(|out| Ok(out.write_all(text.as_bytes())?))
@@ -82,6 +84,7 @@ pub(super) static HDF: Format = Format {
     writer: Some(Writer {
         holds: Holds { fields: true, notes: "as VTU, for large meshes; layout 1.0, VTK 9.1 and later", ..HOLDS },
         loses: LOSES,
+        held: None,
         write: |part, mesh, options| hdf::write(part.path(), mesh, options.fields, options.volume_only),
     }),
 };

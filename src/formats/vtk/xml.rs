@@ -11,8 +11,8 @@ use super::encoded::Source;
 use super::fault::VtkFault;
 use super::grid::Grid;
 use super::header::Header;
-use super::well_formed;
 use crate::formats::error::{Fault, Flaw, Place};
+use crate::formats::well_formed;
 use crate::mesh::Mesh;
 
 /// Reads a mesh from a file's whole content; its arrays may take `memory` bytes.
@@ -133,7 +133,7 @@ impl File<'_> {
         let mut reader = Reader::from_reader(head);
         loop {
             self.place = reader.buffer_position();
-            let event = reader.read_event().map_err(|error| self.flaw(VtkFault::Xml(error.to_string())))?;
+            let event = reader.read_event().map_err(|error| self.flaw(Fault::Xml(error.to_string())))?;
             match event {
                 Event::Start(start) => {
                     self.check(&start)?;
@@ -172,15 +172,15 @@ impl File<'_> {
                 }
                 // Behind a mark of the encoding at most.
                 Event::Decl(_) if self.place > 3 => {
-                    return Err(self.flaw(VtkFault::Xml("a declaration that does not stand first".into())));
+                    return Err(self.flaw(Fault::Xml("a declaration that does not stand first".into())));
                 }
                 Event::Decl(found) => well_formed::declaration(&found).map_err(|fault| self.flaw(fault))?,
                 // No program writes numbers so; left out they would be lost.
                 Event::CData(_) | Event::GeneralRef(_) if self.in_array() || self.has_no_text() => {
-                    return Err(self.flaw(VtkFault::Xml("a reference or CDATA where there is none".into())));
+                    return Err(self.flaw(Fault::Xml("a reference or CDATA where there is none".into())));
                 }
                 Event::GeneralRef(name) if !name.is_char_ref() && resolve_xml_entity(&name).is_none() => {
-                    return Err(self.flaw(VtkFault::Xml("a reference to nothing".into())));
+                    return Err(self.flaw(Fault::Xml("a reference to nothing".into())));
                 }
                 Event::Eof => return Ok(()),
                 _ => {}
@@ -202,7 +202,7 @@ impl File<'_> {
     /// Refuses a tag that is none, and a second root.
     fn check(&self, start: &BytesStart) -> Result<(), Flaw> {
         if self.root && self.open.is_empty() {
-            return Err(self.flaw(VtkFault::Xml("an element behind the end".into())));
+            return Err(self.flaw(Fault::Xml("an element behind the end".into())));
         }
         well_formed::tag(start).map_err(|fault| self.flaw(fault))
     }

@@ -5,13 +5,9 @@ use std::path::{Path, PathBuf};
 use super::Place;
 use crate::common::sagitta;
 
-/// A folder is no file, but may be recognised.
 #[test]
 fn foreign_meshes_are_named_with_a_remedy() {
     let place = Place::new();
-    let case = place.0.path().join("case");
-    std::fs::create_dir_all(case.join("constant/polyMesh")).unwrap();
-    std::fs::write(case.join("constant/polyMesh/faces"), "").unwrap();
     let hdf5: &[u8] = b"\x89HDF\r\n\x1a\n";
     let adf: &[u8] = b"\x01\x02\x03\x04ADF Database Version";
     let foreign: [(&str, &[u8], &str, &str); 17] = [
@@ -22,7 +18,7 @@ fn foreign_meshes_are_named_with_a_remedy() {
         ("fluent.msh", b"(0 \"made by\")\n(2 3)\n", "Fluent", "CGNS"),
         ("bare.msh", b"(2 3)\n(10 (0 1 8 0 3))\n", "Fluent", "CGNS"),
         ("a.msh.h5", hdf5, "Fluent", "CGNS"),
-        ("points", b"/*---*\\\nFoamFile\n{\n}\n", "OpenFOAM", "polyhedra"),
+        ("points", b"/*---*\\\nFoamFile\n{\n}\n", "OpenFOAM", "the case's folder"),
         ("a.stl", b"solid a\n facet normal 0 0 1\n", "STL", "STEP"),
         ("b.stl", &[0x20; 100], "STL", "STEP"),
         ("a.inp", b"** comment\n*HEADING\n", "Abaqus", "meshio"),
@@ -33,9 +29,8 @@ fn foreign_meshes_are_named_with_a_remedy() {
         ("a.mesh", b"MFEM NURBS mesh v1.0\n", "MFEM", "SetCurvature"),
         ("a.exo", b"CDF\x01\x00", "Exodus", "meshio"),
     ];
-    let mut files: Vec<(PathBuf, &str, &str)> =
+    let files: Vec<(PathBuf, &str, &str)> =
         foreign.iter().map(|&(name, content, kind, remedy)| (place.write(name, content), kind, remedy)).collect();
-    files.push((case, "OpenFOAM", "another format"));
     for (path, kind, remedy) in files {
         for command in ["info", "check"] {
             let told = sagitta(args![command, path]).expect(2).stderr;

@@ -2,13 +2,12 @@
 
 use quick_xml::events::{BytesDecl, BytesStart};
 
-use super::fault::VtkFault;
-use crate::formats::error::{Flaw, Place};
+use super::error::{Fault, Flaw, Place};
 
 /// Refuses characters that XML has none for: control characters, and bytes that are not of its encoding.
 ///
 /// # Errors
-/// [`VtkFault::Xml`] at the first of them.
+/// [`Fault::Xml`] at the first of them.
 pub(super) fn characters(xml: &[u8]) -> Result<(), Flaw> {
     let control = xml.iter().position(|byte| *byte < b' ' && !matches!(byte, b'\t' | b'\n' | b'\r'));
     let declaration = xml.split(|&byte| byte == b'>').next().unwrap_or_default();
@@ -17,7 +16,7 @@ pub(super) fn characters(xml: &[u8]) -> Result<(), Flaw> {
     let other = declaration.starts_with("<?xml") && declaration.contains("encoding") && !declaration.contains("utf-8");
     let wrong = std::str::from_utf8(xml).err().filter(|_| !other).map(|error| error.valid_up_to());
     match control.into_iter().chain(wrong).min() {
-        Some(at) => Err(Flaw::new(Place::Byte(at as u64), VtkFault::Xml("a character that no XML has".into()))),
+        Some(at) => Err(Flaw::new(Place::Byte(at as u64), Fault::Xml("a character that no XML has".into()))),
         None => Ok(()),
     }
 }
@@ -25,31 +24,31 @@ pub(super) fn characters(xml: &[u8]) -> Result<(), Flaw> {
 /// Refuses a declaration of another version than those that there are.
 ///
 /// # Errors
-/// [`VtkFault::Xml`].
-pub(super) fn declaration(found: &BytesDecl) -> Result<(), VtkFault> {
+/// [`Fault::Xml`].
+pub(super) fn declaration(found: &BytesDecl) -> Result<(), Fault> {
     match found.version() {
         Ok(version) if matches!(&*version, "1.0" | "1.1") => Ok(()),
-        Ok(version) => Err(VtkFault::Xml(format!("version {version:?}"))),
-        Err(error) => Err(VtkFault::Xml(error.to_string())),
+        Ok(version) => Err(Fault::Xml(format!("version {version:?}"))),
+        Err(error) => Err(Fault::Xml(error.to_string())),
     }
 }
 
 /// Refuses a tag whose attributes cannot be told apart: one that is not found would be taken as not given.
 ///
 /// # Errors
-/// [`VtkFault::Xml`].
-pub(super) fn tag(found: &BytesStart) -> Result<(), VtkFault> {
+/// [`Fault::Xml`].
+pub(super) fn tag(found: &BytesStart) -> Result<(), Fault> {
     for attribute in found.attributes() {
-        let attribute = attribute.map_err(|error| VtkFault::Xml(error.to_string()))?;
+        let attribute = attribute.map_err(|error| Fault::Xml(error.to_string()))?;
         let (name, value) = (attribute.key.as_ref(), attribute.value.as_ref());
         if !is_name(name) || value.contains('<') {
-            return Err(VtkFault::Xml(format!("{:?} is no attribute", name.chars().take(40).collect::<String>())));
+            return Err(Fault::Xml(format!("{:?} is no attribute", name.chars().take(40).collect::<String>())));
         }
     }
     if is_name(found.name().as_ref()) && stand_apart(found) {
         Ok(())
     } else {
-        Err(VtkFault::Xml("a tag whose name or attributes cannot be told apart".into()))
+        Err(Fault::Xml("a tag whose name or attributes cannot be told apart".into()))
     }
 }
 
