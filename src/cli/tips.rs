@@ -77,5 +77,5 @@ pub(super) fn not_exchanged(mesh: &Path, cad: &Path) -> Result<(), Failure> {
     if exchanged {
         return Err(format!("{told}: a mesh, where the CAD is to be given; exchange it with {}", mesh.display()).into());
     }
-    Err(format!("{told}: a mesh, where the CAD is to be given: a STEP, IGES or BREP file behind --cad").into())
+    Err(format!("{told}: a mesh, not a CAD file; give a STEP, IGES or BREP file behind --cad").into())
 }

@@ -12,8 +12,10 @@ import pyvista
 
 
 def spread(values):
+    """Least and largest of the finite values, and whether all are."""
     values = np.asarray(values)
-    return [float(np.min(values)), float(np.max(values)), bool(np.all(np.isfinite(values)))] if values.size else None
+    finite = values[np.isfinite(values)]
+    return [float(np.min(finite)), float(np.max(finite)), finite.size == values.size] if finite.size else None
 
 
 def grid(own):

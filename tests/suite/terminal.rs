@@ -217,7 +217,9 @@ fn progress_is_redrawn_in_place_and_an_interrupt_is_acknowledged_at_once() {
         let (screen, code) = terminal.end();
         assert_eq!(code, 5, "{screen}");
         assert!(screen.contains("stopped early: interrupted") && screen.contains("written: weeble.msh"), "{screen}");
-        assert!(!screen.contains("estimate"), "the live lines are taken away:\n{screen}");
+        // The terminal itself writes ^C, which leaves the heads above the acknowledgement.
+        let after = screen.split_once("interrupt again").unwrap().1;
+        assert!(!after.contains("estimate") && !after.contains("/7 "), "the live lines are taken away:\n{screen}");
         assert!(dir.path().join(OsString::from("weeble.msh")).exists());
     }
 }

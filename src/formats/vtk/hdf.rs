@@ -26,6 +26,13 @@ pub(super) fn write(path: &Path, mesh: &Mesh, fields: &[Field], volume_only: boo
     let grid = Grid::new(mesh, if volume_only { Selection::Cells } else { Selection::All });
     grid.check(fields)?;
     let file = create(path)?;
+    fill(&file, &grid, fields)?;
+    // Here the library tells of what it could not write; when a handle is dropped it does not.
+    file.flush()?;
+    Ok(file.close()?)
+}
+
+fn fill(file: &hdf5::File, grid: &Grid, fields: &[Field]) -> Result<(), Unwritten> {
     let root = file.create_group("VTKHDF")?;
     root.new_attr::<i64>().shape([2]).create("Version")?.write_raw(&VERSION)?;
     let kind = FixedAscii::<16>::from_ascii("UnstructuredGrid").map_err(|e| Unwritten::Io(io::Error::other(e)))?;
@@ -44,12 +51,12 @@ pub(super) fn write(path: &Path, mesh: &Mesh, fields: &[Field], volume_only: boo
     let (points, cells) = (points?, cells?);
     for array in &arrays {
         match (array.section, array.name) {
-            ("PointData", name) => dataset(&points, name, &grid, array)?,
-            ("CellData", name) => dataset(&cells, name, &grid, array)?,
-            ("Points", name) => dataset(&root, name, &grid, array)?,
-            (_, "connectivity") => dataset(&root, "Connectivity", &grid, array)?,
-            (_, "offsets") => dataset(&root, "Offsets", &grid, array)?,
-            (_, _) => dataset(&root, "Types", &grid, array)?,
+            ("PointData", name) => dataset(&points, name, grid, array)?,
+            ("CellData", name) => dataset(&cells, name, grid, array)?,
+            ("Points", name) => dataset(&root, name, grid, array)?,
+            (_, "connectivity") => dataset(&root, "Connectivity", grid, array)?,
+            (_, "offsets") => dataset(&root, "Offsets", grid, array)?,
+            (_, _) => dataset(&root, "Types", grid, array)?,
         }
     }
     let names = root.create_group("FieldData")?;
@@ -108,7 +115,10 @@ impl<T: H5Type + bytemuck::Pod> Rows<T> {
             self.set.write_slice(values, Hyperslab::new(vec![places.into(), (0..self.width).into()]))
         };
         self.done += rows;
-        written.map_err(io::Error::other)
+        written.map_err(|error| match Unwritten::from(error) {
+            Unwritten::Io(error) => error,
+            Unwritten::Inexpressible(reason) => io::Error::other(reason),
+        })
     }
 }
 

@@ -143,9 +143,11 @@ impl<'a> Grid<'a> {
         Ok(())
     }
 
-    /// All arrays, in file order.
+    /// All arrays, in file order; those of boundary elements only where there are some.
     pub(super) fn arrays<'b>(&self, fields: impl IntoIterator<Item = &'b Field>) -> Vec<Array<'b>> {
-        let fields: Vec<&Field> = fields.into_iter().collect();
+        let has_sides = self.parts.iter().any(|part| part.block.cell.dimension() + 1 == self.top);
+        let shown = |field: &&Field| has_sides || !matches!(field.support, Support::Sides(_));
+        let fields: Vec<&Field> = fields.into_iter().filter(shown).collect();
         let of = |section, name, kind, width, components, items: usize, content| Array {
             section,
             name,
