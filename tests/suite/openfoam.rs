@@ -228,3 +228,21 @@ fn cut_and_foreign_files_are_told() {
     std::fs::write(&points, text.replace("LSB", "MSB")).unwrap();
     assert!(formats::read(folder.path()).unwrap_err().to_string().contains("big-endian"));
 }
+
+/// Whoever unpacks a case of others may find a pipe in it.
+#[test]
+fn a_pipe_in_the_place_of_a_file_is_not_waited_for() {
+    let dir = tempfile::tempdir().unwrap();
+    Case::of(&sample("hexpyrtet_p1_msh41a.msh")).write(dir.path(), None);
+    for name in ["points", "owner", "neighbour", "boundary"] {
+        let file = dir.path().join("constant/polyMesh").join(name);
+        let kept = std::fs::read(&file).unwrap();
+        std::fs::remove_file(&file).unwrap();
+        assert!(std::process::Command::new("mkfifo").arg(&file).status().unwrap().success());
+        let told = sagitta(args!["info", dir.path()]).expect(2).stderr;
+        assert!(told.contains(name) && told.contains("not a regular file"), "{told}");
+        std::fs::remove_file(&file).unwrap();
+        std::fs::write(&file, kept).unwrap();
+    }
+    sagitta(args!["info", dir.path()]).expect(0);
+}

@@ -1,6 +1,6 @@
 //! A mesh from the files of a case.
 
-use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::fault::FoamFault;
@@ -32,7 +32,8 @@ pub(super) fn read(faces_file: &Path, memory: u64) -> Result<Mesh, Error> {
     let mut left = memory / MEMORY_OF_FILE;
     let mut content = |path: &PathBuf| {
         let failed = |source| Error::Io { file: path.clone(), action: "read", source };
-        let length = fs::metadata(path).map_err(failed)?.len();
+        let mut file = cad::regular::open(path).map_err(failed)?;
+        let length = file.metadata().map_err(failed)?.len();
         left = left.checked_sub(length).ok_or_else(|| Error::Format {
             file: path.clone(),
             reason: format!(
@@ -40,7 +41,9 @@ pub(super) fn read(faces_file: &Path, memory: u64) -> Result<Mesh, Error> {
                 memory >> 20
             ),
         })?;
-        fs::read(path).map_err(failed)
+        let mut bytes = Vec::new();
+        file.by_ref().take(length).read_to_end(&mut bytes).map_err(failed)?;
+        Ok(bytes)
     };
     let path = file("points");
     let points = Tokens::new(&content(&path)?, &["vectorField", "pointField"]).and_then(|mut own| own.points());
@@ -149,7 +152,7 @@ fn patches(bytes: &[u8], faces: usize) -> Result<Vec<Patch>, Flaw> {
         let last = first.saturating_add(own);
         let range = usize::try_from(first).ok().zip(usize::try_from(last).ok()).filter(|&(a, b)| a <= b && b <= faces);
         let Some((first, end)) = range else {
-            return Err(tokens.flaw(FoamFault::Patch { name, first, last: last - 1, count: faces }));
+            return Err(tokens.flaw(FoamFault::Patch { name, first, last: last.saturating_sub(1), count: faces }));
         };
         let kind = entry("type").unwrap_or_default();
         patches.push(Patch { name, kind, neighbour: entry("neighbourPatch"), first, end });
