@@ -65,7 +65,7 @@ pub(super) static VTM: Format = Format {
                     have values there",
             ..HOLDS
         },
-        loses: LOSES,
+        loses: &[Loss::NodeNumbers, Loss::Periodic, Loss::Conditions, Loss::Parameters, Loss::Zones],
         held: None,
         write: |part, mesh, options| {
             let text = collection::write(part.name(), mesh, options.fields)?;
