@@ -227,8 +227,9 @@ fn the_files_of_a_case_are_inputs() {
     let dir = tempfile::tempdir().unwrap();
     let folder = dir.path().join("constant/polyMesh");
     fs::create_dir_all(&folder).unwrap();
-    for name in ["points", "faces", "owner", "neighbour", "boundary"] {
-        fs::write(folder.join(name), "precious").unwrap();
+    let names = ["points", "faces", "owner", "neighbour", "boundary"];
+    names.iter().for_each(|name| fs::write(folder.join(name), "precious").unwrap());
+    for name in names {
         let told = sagitta(args!["check", dir.path(), "--report", folder.join(name)]).expect(2).stderr;
         assert!(told.contains("is the same file as"), "{told}");
         assert_eq!(fs::read_to_string(folder.join(name)).unwrap(), "precious");
