@@ -57,7 +57,7 @@ test: setup venv lint unit python examples ## everything that CI checks: format,
 lint: setup-build ## format, clippy and rustdoc, without warnings
 	cargo fmt --all -- --check
 	cargo clippy --workspace --all-targets -- -D warnings
-	cargo clippy --workspace --exclude opencascade-sys --no-default-features --lib --bins --examples -- -D warnings
+	cargo clippy -p sagitta --no-default-features --lib --bins --examples -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
 
 unit: setup-build venv ## tests and doctests, by cargo-nextest where it is installed

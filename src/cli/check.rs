@@ -112,7 +112,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
         #[cfg(feature = "cad")]
         let distances = options.room.face_distances(&mesh)?;
         #[cfg(not(feature = "cad"))]
-        let distances = rustc_hash::FxHashMap::default();
+        let distances: rustc_hash::FxHashMap<crate::mesh::FaceKey, f64> = rustc_hash::FxHashMap::default();
         beside.tell(write_page(path, &page.text(|face| distances.get(&face).copied())?));
     }
     beside.tell(print(&report.to_string()));

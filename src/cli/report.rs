@@ -59,7 +59,7 @@ pub(super) fn run(options: &Options) -> Result<u8, Failure> {
     #[cfg(feature = "cad")]
     let distances = options.cad.face_distances(&mesh)?;
     #[cfg(not(feature = "cad"))]
-    let distances = rustc_hash::FxHashMap::default();
+    let distances: rustc_hash::FxHashMap<crate::mesh::FaceKey, f64> = rustc_hash::FxHashMap::default();
     signals::result_is(&options.output, DONE);
     write_page(&options.output, &page.text(|face| distances.get(&face).copied())?)?;
     let mut beside = Beside::default();

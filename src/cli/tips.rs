@@ -4,6 +4,7 @@ use std::path::Path;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
+#[cfg(feature = "cad")]
 use super::output::Failure;
 use crate::formats;
 
