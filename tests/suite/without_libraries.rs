@@ -53,8 +53,7 @@ fn check_and_convert_work_without_opencascade_and_hdf5() {
     let written = folder.path().join("weeble.vtu");
     let (mesh, written) = ("fixtures/weeble/weeble.msh", written.to_str().unwrap());
     told(&program, &["convert", mesh, "-o", written], 0);
-    let verdicts = [mesh, written].map(|mesh| told(&program, &["check", mesh], 0));
-    let [before, after] = verdicts.each_ref().map(|verdict| verdict.split_once(':').unwrap().1);
+    let [before, after] = [mesh, written].map(|mesh| told(&program, &["check", mesh], 0).replace(mesh, "MESH"));
     assert_eq!(before, after);
     assert!(before.contains("certified"), "{before}");
     assert!(told(&program, &["info", mesh], 0).contains("mesh of order P1"));
