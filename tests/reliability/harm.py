@@ -117,6 +117,11 @@ def full_disks(table, sagitta, sizes):
             run(["umount", disk])
 
 
+def hearing():
+    """Under nohup the program would hear no SIGHUP, and nothing would be tried."""
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
+
 def signals(table, sagitta):
     """Each signal once and twice in each step of `curve`: no file or a valid one, and a documented exit code."""
     mesh, cad = case("weeble")
@@ -127,7 +132,8 @@ def signals(table, sagitta):
                 with tempfile.TemporaryDirectory() as folder:
                     out = Path(folder, "out.msh")
                     command = [sagitta, "curve", mesh, "--cad", cad, "--order", "2", "-o", out]
-                    child = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+                    child = subprocess.Popen(
+                        command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, preexec_fn=hearing)
                     for line in child.stderr:
                         if f" {step}/{STEPS} " in line:
                             break

@@ -5,6 +5,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::common::sample::sample;
 use sagitta::element::{Cell, Order};
 use sagitta::formats::{self, ReadOptions, WriteOptions};
 use sagitta::mesh::elevate::elevate;
@@ -16,10 +17,6 @@ fn read(path: &Path) -> Mesh {
         &ReadOptions { reader: Some(env!("CARGO_BIN_EXE_sagitta").into()), ..ReadOptions::default() },
     )
     .unwrap()
-}
-
-fn sample(name: &str) -> Mesh {
-    read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/samples").join(name))
 }
 
 /// Elements of the cells and the boundary by entity, in the mesh's order.

@@ -1,18 +1,14 @@
 //! Fluent's meshes as text: cells made from faces.
 
 use std::fmt::Write as _;
-use std::path::Path;
 
 use sagitta::element::Cell;
 use sagitta::formats;
 use sagitta::mesh::Mesh;
 
 use crate::common::measure::measure;
+use crate::common::sample::sample;
 use crate::openfoam::{Case, content};
-
-fn sample(name: &str) -> Mesh {
-    formats::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/samples").join(name)).unwrap()
-}
 
 /// A case as a Fluent mesh: all numbers hexadecimal, from 1; the faces mixed or of one kind.
 fn text(case: &Case, mixed: bool) -> String {

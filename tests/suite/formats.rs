@@ -5,6 +5,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::common::sample::sample;
 use sagitta::element::{Cell, Order};
 use sagitta::formats::msh::{self, Encoding, Version};
 use sagitta::formats::{self, Field, Support, Values, WriteOptions};
@@ -21,10 +22,6 @@ fn samples() -> Vec<PathBuf> {
     files.sort();
     assert!(files.len() >= 15);
     files
-}
-
-fn sample(name: &str) -> Mesh {
-    formats::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/samples").join(name)).unwrap()
 }
 
 fn msh(version: Version, encoding: Encoding) -> WriteOptions<'static> {

@@ -1,26 +1,12 @@
 //! HOPR's HDF5, written and read again.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
+use crate::common::sample::{curved, sample};
 use hdf5_metno::File;
-use sagitta::element::{Cell, Order};
+use sagitta::element::Cell;
 use sagitta::formats::{self, WriteOptions};
 use sagitta::mesh::Mesh;
-use sagitta::mesh::elevate::elevate;
-
-fn sample(name: &str) -> Mesh {
-    formats::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/samples").join(name)).unwrap()
-}
-
-/// A mesh of an order with every node moved.
-fn curved(name: &str, p: usize) -> Mesh {
-    let mut mesh = elevate(&sample(name), Order::new(p).unwrap()).unwrap().mesh;
-    for x in mesh.points_mut() {
-        *x += 0.02 * glam::DVec3::new((3.0 * x.y).sin(), (2.0 * x.z).cos(), (4.0 * x.x).sin());
-    }
-    mesh
-}
 
 /// Cells, and sides by name, as the bits of their nodes in their order.
 fn content(mesh: &Mesh) -> BTreeMap<(Cell, String), Vec<Vec<[u64; 3]>>> {

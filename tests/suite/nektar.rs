@@ -6,26 +6,13 @@ use std::path::{Path, PathBuf};
 
 use base64::Engine;
 use glam::DVec3;
-use sagitta::element::{Cell, Order, interior_start, lattice};
+use sagitta::element::{Cell, interior_start, lattice};
 use sagitta::formats::{self, WriteOptions, solver};
-use sagitta::mesh::elevate::elevate;
 use sagitta::mesh::{Mesh, NodeId};
 
 use crate::common::measure::measure;
+use crate::common::sample::{curved, sample};
 use crate::common::{fixture, sagitta};
-
-fn sample(name: &str) -> Mesh {
-    formats::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/samples").join(name)).unwrap()
-}
-
-/// A mesh of an order, curved so that no edge is straight.
-fn curved(name: &str, p: usize) -> Mesh {
-    let mut mesh = elevate(&sample(name), Order::new(p).unwrap()).unwrap().mesh;
-    for x in mesh.points_mut() {
-        *x += 0.02 * DVec3::new((3.0 * x.y).sin(), (2.0 * x.z).cos(), (4.0 * x.x).sin());
-    }
-    mesh
-}
 
 const ZOO: &str = "hexpyrtet_p1_msh41b.msh";
 const PRISMS: &str = "cylprism_p1_msh41b.msh";

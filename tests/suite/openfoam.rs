@@ -10,10 +10,7 @@ use sagitta::mesh::{FaceKey, Mesh, NodeId};
 
 use crate::common::measure::measure;
 use crate::common::sagitta;
-
-fn sample(name: &str) -> Mesh {
-    formats::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/samples").join(name)).unwrap()
-}
+use crate::common::sample::sample;
 
 /// The files of a mesh, by the rules of OpenFOAM's user guide: faces between cells first, the owner the lower of the two.
 pub(crate) struct Case {

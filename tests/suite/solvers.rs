@@ -9,11 +9,8 @@ use sagitta::mesh::elevate::elevate;
 use sagitta::mesh::{EntityKey, Mesh, NodeId, Parts, PhysicalName};
 
 use crate::common::measure::measure;
+use crate::common::sample::sample;
 use crate::common::{fixture, sagitta};
-
-fn sample(name: &str) -> Mesh {
-    formats::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/samples").join(name)).unwrap()
-}
 
 /// A mesh with a line that belongs to no group, as the curves of a CAD do.
 fn with_a_line(mesh: Mesh) -> Mesh {

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use crate::common::measure::measure;
+use crate::common::sample::sample;
 use crate::common::{fixture, json, number, root, sagitta};
 use tempfile::TempDir;
 
@@ -198,10 +199,6 @@ fn of_several_mesh_and_cad_files_the_given_ones_are_meant() {
         sagitta(args!["curve", renamed, "--cad", ring.cad, "--linkage", several, "--order", "2", "-q", "-o", output])
             .expect(2);
     assert!(told.stderr.contains("other.cgns, ring.x") && told.stderr.contains("third.x"), "{}", told.stderr);
-}
-
-fn sample(name: &str) -> sagitta::mesh::Mesh {
-    sagitta::formats::read(&root().join("fixtures/samples").join(name)).unwrap()
 }
 
 /// Two structured zones whose axes run differently: joined by their connection, as their points are apart by rounding.

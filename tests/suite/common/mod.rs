@@ -20,6 +20,7 @@ pub mod input;
 pub mod linkage;
 pub mod measure;
 pub mod random;
+pub mod sample;
 pub mod sound;
 pub mod ugrid;
 
